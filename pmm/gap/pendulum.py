@@ -37,6 +37,7 @@ from sim.pendulum.suspension import Suspension
 _LARGEST_RAD = 1.6  # no pendulum test begins with a quarter of a turn
 _PERIODS_APART = 1.5  # factor: no gap that is told by swings, but another body
 _GATE_AMPLITUDE_RAD = 0.1
+_LET_GO = 1.0  # swings, in which a hand, a lag and the memory of the water still show
 _GATE_SWINGS = 4  # in a window
 _OWN = ("line_excess", "spacing", "amplitude_period")  # each suspension has its own error
 _OWN_DRIVEN = ("sensor_delay",)  # each record has its own clock
@@ -144,7 +145,7 @@ def _part(record: Record, folder: Path) -> UsablePart:
 def _sampled(part: UsablePart, body: Floating | Pendulum, period_s: float) -> Trial:
     series = part.series
     stop_s, rate_hz = float(series.time_s[-1]), series.sample_rate_hz
-    windows = cut_into_windows(series.start_s, stop_s, period_s, rate_hz)
+    windows = cut_into_windows(series.start_s + _LET_GO * period_s, stop_s, period_s, rate_hz)
     swings = swings_of_samples(series.time_s, series.values, windows)
     bench = _bench(body, part.first_amplitude)
     name = body.coordinates[0].name

@@ -18,6 +18,7 @@ from hardware.description.errors import ConfigurationError, DataError
 from pmm.gap.own_effects import chosen_of_pendulums, files_among, try_effect
 from pmm.gap.pendulum import problem_of
 from pmm.gap.pendulum_file import PendulumCase, read_case
+from pmm.gap.pendulum_notes import notes
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,7 @@ class ExaminedPendulum:
         said = [f"the simulation has {', '.join(on)} on"] if on else []
         if self.hidden:
             said.append(f"these records cannot show {', '.join(self.hidden)}")
-        return tuple(said)
+        return (*said, *notes(self.diagnosis))
 
 
 def examine_pendulum(

@@ -17,8 +17,9 @@ from analysis.gap.pendulum.verdict import TOLD_APART
 from analysis.inertia.spread import cause_statement
 from hardware.description.arrays import FloatArray
 from pmm.gap.pendulum_conclusion import PendulumConclusion, conclusion_of, parameters
-from pmm.gap.words import OUTSIDE
+from pmm.gap.words import OUTSIDE, listed
 
+_ALIKE: Final = 4  # causes that a sentence names
 FASTER: Final = "damping that grows faster than linearly"
 _DECAY, _PERIOD = (KINDS.index(kind) for kind in ("decay", "period"))
 
@@ -106,8 +107,9 @@ def _alike_names(concluded: PendulumConclusion, name: str) -> tuple[str, ...]:
 
 
 def _alike(shares: Mapping[str, float]) -> str:
-    said = " or ".join(f"{name} ({share:.2f})" for name, share in shares.items())
-    return f"{said} cannot be told apart by these records"
+    said = [f"{name} ({share:.2f})" for name, share in shares.items()]
+    more = [f"{len(said) - _ALIKE} others"] if len(said) > _ALIKE else []
+    return f"{listed([*said[:_ALIKE], *more])} cannot be told apart by these records"
 
 
 def _damping(laws: Sequence[DampingLaw], rivals: Sequence[DampingLaw], names: Sequence[str]) -> str:
@@ -179,12 +181,10 @@ def what_to_do(diagnosis: PendulumDiagnosis, concluded: PendulumConclusion) -> s
 
 def _told_by(concluded: PendulumConclusion) -> str:
     """Return the measurements that tell apart what these records cannot; empty if none is known."""
-    how = {
-        measurement: " and ".join(names)
-        for names in concluded.alike_causes.values()
-        for measurement in separating_measurements([name.partition(" of ")[0] for name in names])
-    }
-    return "; ".join(f"Tell {names} apart by {measurement}" for measurement, names in how.items())
+    how: dict[str, tuple[str, ...]] = {}
+    for names in concluded.alike_causes.values():
+        how |= separating_measurements([name.partition(" of ")[0] for name in names])
+    return "; ".join(f"Tell {listed(names)} apart by {what}" for what, names in how.items())
 
 
 def _would_tell(diagnosis: PendulumDiagnosis) -> str:

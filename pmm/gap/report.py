@@ -24,7 +24,7 @@ from pmm.gap.run_notes import command_notes, noise_notes, odd_note, odd_one, run
 from pmm.gap.sizes import HowLarge, how_large, own_sizes
 from pmm.gap.steps import StepRow, step_row
 from pmm.gap.tables import ControlRow, RankedAnswer, RegimeRow
-from pmm.gap.words import Remedies, joined, sentences
+from pmm.gap.words import Remedies, joined, sentences, something_besides
 
 _SHOWN: Final = 8  # hypotheses of the ranking
 _LEAST: Final = 1e-4
@@ -140,12 +140,7 @@ def _of_cause(examined: Examined, cause: Fit) -> Iterator[str]:
             f"would do the same in these runs as {joined(cause.answer)}"
             + (f"; to tell them apart: {'; '.join(how)}" if how else "")
         )
-    besides = examined.diagnosis.answers.besides[cause.answer]
-    if besides > 0.5:
-        yield (
-            f"beside {joined(cause.answer)} there is something that the catalogue does not have "
-            f"(probability {besides:.2f}): another form of it, or something smaller"
-        )
+    yield from something_besides(cause.answer, examined.diagnosis.answers.besides[cause.answer])
 
 
 def _ranking(examined: Examined) -> Iterator[RankedAnswer]:

@@ -1,6 +1,6 @@
 """A conclusion in three plain sentences: what is wrong, how large it is, what to do next."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -9,6 +9,7 @@ from pmm.gap.conclusion import EFFECT, Conclusion
 from pmm.gap.sizes import HowLarge
 
 _WITHIN: Final = "no coefficient is off by more than its uncertainty"
+_PROBABLY: Final = 0.5
 OUTSIDE: Final = "something that the catalogue does not have"
 
 
@@ -123,7 +124,7 @@ def _steps(conclusion: Conclusion) -> str:
 
 def how_large_it_is(conclusion: Conclusion, large: HowLarge, effect_sizes: Sequence[str]) -> str:
     """Return how large the difference is, and by how much it puts a coefficient off."""
-    sizes, worst = _listed([size.sentence for size in large.sizes]), large.coefficient
+    sizes, worst = listed([size.sentence for size in large.sizes]), large.coefficient
     if conclusion.adds:
         put = f"it puts {worst.name} off by {worst.percentage}" if worst else _WITHIN
         return f"{'; '.join([f'It changes {sizes}', put, *effect_sizes])}."
@@ -134,12 +135,6 @@ def how_large_it_is(conclusion: Conclusion, large: HowLarge, effect_sizes: Seque
     if conclusion.verdict == UNKNOWN:
         return f"They differ in {sizes}, little more than noise; {fitted}."
     return f"They differ in {sizes}, no more than noise; {fitted}."
-
-
-def _listed(parts: Sequence[str]) -> str:
-    """Return parts of a sentence with commas between them, and "and" before the last."""
-    *others, last = parts
-    return f"{', '.join(others)} and {last}" if others else last
 
 
 def what_to_do(conclusion: Conclusion, todo: Remedies) -> str:
@@ -164,3 +159,18 @@ def what_to_do(conclusion: Conclusion, todo: Remedies) -> str:
 def joined(answer: str) -> str:
     """Return an answer as people read it: the effects of a pair with "and" between them."""
     return " and ".join(answer.split("+"))
+
+
+def listed(parts: Sequence[str]) -> str:
+    """Return parts of a sentence with commas between them, and "and" before the last."""
+    *others, last = parts
+    return f"{', '.join(others)} and {last}" if others else last
+
+
+def something_besides(answer: str, share: float) -> Iterator[str]:
+    """Yield a sentence where something unknown is probably there beside what is named."""
+    if share > _PROBABLY:
+        yield (
+            f"beside {joined(answer)} there is something that the catalogue does not have "
+            f"(probability {share:.2f}): another form of it, or something smaller"
+        )

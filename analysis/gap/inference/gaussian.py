@@ -114,6 +114,12 @@ class Posterior:
         """Inverse of the precision."""
         return np.asarray(np.linalg.inv(self.precision), np.float64)
 
+    @cached_property
+    def root(self) -> FloatArray:
+        """What times its transpose is the covariance; no precision is below the prior's 1."""
+        values, turn = np.linalg.eigh(self.precision)
+        return np.asarray(turn / np.sqrt(np.maximum(values, 1.0)), np.float64)
+
     @property
     def log_volume(self) -> float:
         """Half the log of the covariance's determinant: what is left of the prior's volume."""

@@ -83,7 +83,13 @@ def coefficient_error(name: str) -> str:
     return _COEFFICIENTS.get(name[:1], name)
 
 
-def separating_measurements(names: Sequence[str]) -> tuple[str, ...]:
-    """Return what to measure to tell the members of a class apart; empty where nothing is known."""
-    measurements = [_SEPARATED.get(frozenset(pair), "") for pair in combinations(sorted(names), 2)]
-    return tuple(dict.fromkeys(measurement for measurement in measurements if measurement))
+def separating_measurements(names: Sequence[str]) -> dict[str, tuple[str, ...]]:
+    """Return what to measure to tell members of a class apart, and which ones it tells.
+
+    Empty where nothing is known.
+    """
+    told: dict[str, dict[str, None]] = {}
+    for pair in combinations(sorted(names), 2):
+        if frozenset(pair) in _SEPARATED:
+            told.setdefault(_SEPARATED[frozenset(pair)], {}).update(dict.fromkeys(pair))
+    return {measurement: tuple(pair) for measurement, pair in told.items()}

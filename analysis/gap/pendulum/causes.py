@@ -22,10 +22,11 @@ from sim.pendulum.effects.setup import ON_LINES
 from sim.pendulum.floating import Floating
 from sim.pendulum.suspension import Suspension
 
-_RANDOM: Final = ("missed_passages", "gate_jitter", "unsteady_release")
+_RANDOM: Final = ("missed_passages", "gate_jitter", "unsteady_release", "sensor_noise")
 _GATES: Final = ("flag_width", "gate_offset")
-_UNDER_A_FORCE: Final = ("force", "force_sign", "sensor_sign", "sensor_delay")
-_NOT_UNDER_A_FORCE: Final = ("sensor_offset", "sensor_noise")
+# Of a body that was let go, a lag shows in how the record begins alone: a release does that too.
+_UNDER_A_FORCE: Final = ("force", "force_sign", "sensor_sign", "sensor_delay", "sensor_lag")
+_NOT_UNDER_A_FORCE: Final = ("sensor_offset", "sensor_drift")
 _NEEDS_LINES: Final = ("line_stretch", "line_creep", "off_level", "yaw_pitch_resonance")
 _HUNG: Final = tuple(effect.name for effect in ON_LINES)
 
@@ -94,7 +95,7 @@ def causes_for(
     if isinstance(first, Floating):
         unfit += ["air", "finite_amplitude"]
     if all(trial.scaled for trial in trials):  # light gates have no reading to be wrong
-        unfit += ["sensor_lag", "sensor_offset", "sensor_gain", "sensor_noise"]
+        unfit += ["sensor_offset", "sensor_gain", "sensor_drift"]
     if isinstance(first, Suspension):
         unfit += ["yaw_pitch_resonance"]
     if not getattr(first, "linear", False):

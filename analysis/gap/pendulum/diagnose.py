@@ -131,14 +131,19 @@ def leading(diagnosis: PendulumDiagnosis) -> tuple[Fit, Fit] | None:
         return best, next((fit for fit in open_fits if not _nested(best, fit)), open_fits[0])
     if not diagnosis.best.candidates:
         return None
-    second = next(
-        (fit for fit in diagnosis.weighed.ranked if not _nested(diagnosis.best, fit)), None
-    )
+    second = next((fit for fit in diagnosis.weighed.ranked if _is_rival(diagnosis.best, fit)), None)
     if second is None:
         return None
     shares = diagnosis.weighed.answers.by_answer
     ahead = shares[diagnosis.best.answer] > TOLD_APART * shares[second.answer]
     return None if diagnosis.verdict.outcome == CAUSE and ahead else (diagnosis.best, second)
+
+
+def _is_rival(best: Fit, fit: Fit) -> bool:
+    """Whether a set is another one: laws of damping beside the same causes are told elsewhere."""
+    rest, others = ({*one.names} - {*DAMPING} for one in (best, fit))
+    damped = len(rest) < len(best.names) and len(others) < len(fit.names)
+    return not _nested(best, fit) and not (damped and rest == others)
 
 
 def _nested(first: Fit, second: Fit) -> bool:

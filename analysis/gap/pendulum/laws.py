@@ -2,15 +2,19 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from typing import Final
+
+import numpy as np
 
 from analysis.gap.forward.candidate import Candidate
 from analysis.gap.pendulum.causes import DAMPING
 from analysis.gap.pendulum.search import Weighed, fit
 from analysis.gap.pendulum.verdict import TOLD_APART
 from analysis.gap.search.fit import Fit, expected_evidence, joined
+from hardware.description.arrays import FloatArray
 from hardware.description.errors import PmmError
 
 _HOPELESS = 60.0  # log evidence to first order that a full fit does not make up for
@@ -22,6 +26,9 @@ _GROWS: Final[Mapping[str, str]] = {
     "cubic_damping": "cubic",
     "power_drag": "any power",
 }
+_POWER: Final = "beta"
+_POWERS: Final[Mapping[str, float]] = {"linear": 0.0, "quadratic": 1.0}  # of it
+_WITHIN, _EXACT = 2.0, 1e-6  # deviations, and what is the same
 LAWS: Final = (
     ("bearing_friction",),
     ("viscous_damping",),
@@ -75,19 +82,39 @@ def damping_laws(
     possible = {candidate.name: candidate for candidate in causes}
     law_names = tuple(candidate.name for candidate in best.candidates if candidate.name in DAMPING)
     tried = {_law(names): names for names in (*map(partial(_linear_as, possible), LAWS), law_names)}
-    fitted = {
-        name: fit(weighed.problem, [*rest, *(possible[cause_name] for cause_name in names)])
-        for name, names in tried.items()
-        if set(names) <= set(possible)
-    }
-    best_law = _law(
-        law_names
-    )  # from its typical size a fit may go astray, where the search did not
+    fitted = {}
+    for name, names in tried.items():
+        with suppress(PmmError):  # a law that cannot act on these records is none
+            if set(names) <= set(possible):
+                parts = [*rest, *(possible[cause_name] for cause_name in names)]
+                fitted[name] = fit(weighed.problem, parts, _seen(weighed, best, parts))
+    best_law = _law(law_names)
     fitted[best_law] = max((best, fitted.get(best_law, best)), key=weighed.log_weight)
     weights = {name: weighed.log_weight(law_fit) for name, law_fit in fitted.items()}
     top = max(weights.values(), default=0.0)
     laws = [DampingLaw(name, law_fit, weights[name] - top) for name, law_fit in fitted.items()]
-    return tuple(sorted(laws, key=lambda law: -law.log_ratio))
+    ranked = sorted(laws, key=lambda law: -law.log_ratio)
+    return tuple(law for law in ranked if law is ranked[0] or not _is_another(law, laws))
+
+
+def _is_another(law: DampingLaw, laws: Sequence[DampingLaw]) -> bool:
+    """Tell whether a law of any power has, within its uncertainty, that of another one."""
+    fit = law.hypothesis
+    for at, axis in enumerate(fit.axes):
+        if axis.parameter.name == _POWER:
+            spread = axis.deviation * float(np.sqrt(fit.posterior.covariance[at, at]))
+            power = axis.value(float(fit.units[at]))
+            there = [_POWERS[other.name] for other in laws if other.name in _POWERS]
+            return any(abs(power - other) < _WITHIN * spread + _EXACT for other in there)
+    return False
+
+
+def _seen(weighed: Weighed, best: Fit, parts: Sequence[Candidate]) -> FloatArray:
+    """Return where the best set or a first look has some causes: typical sizes lead astray."""
+    units = {look.name: look.fit.units for look in weighed.first_looks if look.fit}
+    cuts = np.split(best.units, np.flatnonzero(np.diff(best.effect_index)) + 1)
+    units |= dict(zip(best.names, cuts, strict=True))
+    return np.concatenate([units.get(part.name, part.start) for part in parts])
 
 
 def _linear_as(possible: Mapping[str, Candidate], names: tuple[str, ...]) -> tuple[str, ...]:

@@ -218,6 +218,17 @@ class PendulumProblem:
                 columns += list((error * smooth / self.uncertainty[:, None]).T)
         return self._stacked(columns)
 
+    @cached_property
+    def tolerance_names(self) -> tuple[str, ...]:
+        """What each nuisance is the error of; empty for those that are no tolerance."""
+        variants = sum(len(trial.variants) for trial in self.trials)
+        names = [""] * (self.releases.shape[1] + variants)
+        for tolerance in self.tolerances:
+            if tolerance.is_per_trial:
+                names += [f"{tolerance.name} of {trial.name}" for trial in self.trials]
+        names += [tolerance.name for tolerance in self.tolerances if not tolerance.is_per_trial]
+        return (*names, *[""] * self.model_error_columns.shape[1])
+
     def _stacked(self, columns: Sequence[FloatArray]) -> FloatArray:
         return np.column_stack(columns) if columns else np.empty((self.uncertainty.size, 0))
 

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from analysis.inertia.gates import Passages
 from hardware.description.arrays import FloatArray
@@ -27,6 +28,7 @@ FEWEST_WINDOWS: Final = (
     6  # about a parabola they leave 3 degrees of freedom, of which t has a variance
 )
 MOST_WINDOWS: Final = 60
+_HOLE: Final = 1.0 / 6.0  # of a swing, half a period of its third harmonic, without a sample
 _LEAST_PASSAGES = 5
 
 
@@ -87,7 +89,7 @@ def swings_of_samples(
     -------
     FloatArray
         Shape ``(5, windows)`` in the order of :data:`KINDS`; phase and third harmonic in rad and
-        over the first's amplitude. NaN where a window has too few samples.
+        over the first's amplitude. NaN where a window has too few samples, or a hole.
     """
     since = time_s - windows.start_s
     rough = _fit_swings(since, values, windows, windows.reference_rad_s, steady)
@@ -112,11 +114,13 @@ def _fit_swings(
     swings = np.full((len(KINDS), windows.count), np.nan)
     inverses: dict[tuple[int, float], FloatArray] = {}  # windows sampled alike share theirs
     edges = np.searchsorted(since_s, windows.length_s * np.arange(windows.count + 1) - 1e-9)
+    apart_s = float(np.median(np.diff(since_s)))
+    hole_s = max(_HOLE * windows.length_s / windows.swings, 2.0 * apart_s)
     for at, centre in enumerate(windows.centres_s):
         inside = slice(edges[at], edges[at + 1])
         good = np.isfinite(values[inside])
-        if good.sum() >= _SAMPLES:
-            t = since_s[inside][good] - centre
+        t = since_s[inside][good] - centre
+        if t.size >= _SAMPLES and _longest_hole(t, windows) < hole_s:
             key = (t.size, round(float(t[0] + t[-1]) * omega_rad_s, 9))
             if key not in inverses or t.size < good.size:
                 inverses[key] = np.asarray(
@@ -127,6 +131,11 @@ def _fit_swings(
     good = np.isfinite(swings[_PERIOD])
     swings[_PERIOD, good] = np.unwrap(swings[_PERIOD, good])
     return swings
+
+
+def _longest_hole(t: FloatArray, windows: Windows) -> float:
+    half = 0.5 * windows.length_s
+    return float(np.diff(t, prepend=-half, append=half).max())
 
 
 def _terms(t: FloatArray, omega_rad_s: float, steady: bool) -> FloatArray:
@@ -193,7 +202,7 @@ def scatter(swings: FloatArray) -> FloatArray:
             continue
         size = np.exp(swings[_DECAY, good] - np.max(swings[_DECAY, good]))
         shape = np.ones(size.size) if kind == _MEAN else 1.0 / size
-        spread[kind, good] = shape * _rms_about_smooth(values[good], shape)
+        spread[kind, good] = shape * _rms_about_smooth(np.flatnonzero(good), values[good], shape)
     return spread
 
 
@@ -201,8 +210,7 @@ _FLOOR: Final = 2e-6  # what windows and integration leave of an exact record
 _DEGREE: Final = 5
 
 
-def _rms_about_smooth(values: FloatArray, shape: FloatArray) -> float:
-    place = np.linspace(-1.0, 1.0, values.size)
+def _rms_about_smooth(place: NDArray[np.intp], values: FloatArray, shape: FloatArray) -> float:
     degree = min(_DEGREE, values.size // 3)
     fit = np.polynomial.Legendre.fit(place, values, degree, w=1.0 / shape)
     remainder = (values - fit(place)) / shape

@@ -3,11 +3,12 @@
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, ClassVar, cast
 
 import numpy as np
 
-from analysis.gap.pendulum.swings import Windows, swings_of_samples
+from analysis.gap.pendulum.swings import KINDS, Windows, swings_of_samples
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from sim.pendulum.bench import PendulumBench
@@ -18,6 +19,7 @@ from sim.signals import recorded
 
 _SAMPLES_A_SWING = 40
 _SEED = 0  # nothing random is switched on
+_DECAY, _PERIOD, _MEAN = (KINDS.index(kind) for kind in ("decay", "period", "mean"))
 FURTHER, TURNED = 0.05, 0.1  # a release's tolerance where it is read off the record
 
 
@@ -80,7 +82,26 @@ class Trial:
         (sensor,) = (sensor for sensor in bench.sensors if sensor.channel.name == self.coordinate)
         time_s = np.arange(count) / rate_hz
         since = replace(self.windows, start_s=0.0)
-        return swings_of_samples(time_s, run[recorded(sensor.channel).name], since)
+        swings = swings_of_samples(time_s, run[recorded(sensor.channel).name], since)
+        return self._above_noise(swings)
+
+    def _above_noise(self, swings: FloatArray) -> FloatArray:
+        """Return what is seen of swings: of those that have died out the noise, and no more."""
+        gone = swings[_DECAY] < self._log_noise
+        if gone.any():
+            last = max(int(np.argmax(gone)) - 1, 0)
+            swings[_DECAY, gone], swings[_PERIOD, gone] = self._log_noise, swings[_PERIOD, last]
+            swings[_MEAN + 1 :, gone] = 0.0
+        return swings
+
+    @cached_property
+    def _log_noise(self) -> float:
+        """Logarithm of the amplitude's uncertainty, in its own unit; a gate does not tell it."""
+        noise = self.uncertainty[_DECAY]
+        known = noise > 0.0
+        if self.scaled or not known.any():
+            return -math.inf
+        return float(np.nanmedian(self.observed[_DECAY, known] + np.log(noise[known])))
 
     def placed(self, effects: Iterable[PendulumEffect]) -> list[PendulumEffect]:
         """Return effects on the coordinate that is watched, where they name none."""

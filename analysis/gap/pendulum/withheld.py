@@ -35,12 +35,11 @@ class WithheldPrediction:
     Attributes
     ----------
     gap
-        Root mean square of measured less foretold amplitude (logarithm), in u; of whatever counts
-        under a known force, which shows in phases as well, and where amplitudes do not.
+        Root mean square of measured less foretold, of the kinds that are compared, in u.
     amplitude_gap
-        The same of the amplitude, in the record's unit.
+        The same of the amplitudes, in the record's unit.
     period_gap
-        The same of the phase, in rad.
+        The same of the phases, in rad.
     shrinkage, low, high
         Share of the gap without a cause that goes away, noise floor taken off, and its 95 %
         interval from what the fitted swings leave open.
@@ -83,6 +82,11 @@ def predict_withheld(problem: PendulumProblem, sets: Sequence[Fit]) -> tuple[Wit
     """Withhold small swings, then large ones, and foretell them with some sets of causes.
 
     Where the records are of several suspensions, each of them is withheld instead.
+
+    Parameters
+    ----------
+    sets
+        The answer first: compared are the kinds of observables in which its causes show most.
     """
     if problem.suspensions:
         return (_left_out("each suspension", problem, sets),)
@@ -127,11 +131,12 @@ def _regime(
     ]
     rows = problem.flat([part.astype(float) for part in parts]) > 0.5
     plain = _remainder(problem, no_effect(training), rows)
-    before = _prediction(problem, rows, (), plain, plain)
+    shown = _shown(problem, sets)
+    before = _prediction(problem, rows, shown, (), plain, plain)
     after = []
     for cause_set in sets:
         remainder = _remainder(problem, fit(training, cause_set.candidates, cause_set.units), rows)
-        after.append(_prediction(problem, rows, cause_names(cause_set), plain, remainder))
+        after.append(_prediction(problem, rows, shown, cause_names(cause_set), plain, remainder))
     sizes = problem.amplitude[rows]
     count = int(sum(r.sum() for r in hidden))
     return WithheldSwings(
@@ -170,14 +175,14 @@ def _left_out(name: str, problem: PendulumProblem, sets: Sequence[Fit]) -> Withh
         (np.concatenate([values for values, _ in part]), np.hstack([drawn for _, drawn in part]))
         for part in remainders
     ]
-    sizes = problem.amplitude
+    sizes, shown = problem.amplitude, _shown(problem, sets)
     return WithheldSwings(
         name,
         sum(trial.windows.count for trial in problem.trials),
         (float(sizes.min()), float(sizes.max())),
-        _prediction(problem, all_rows, (), plain, plain),
+        _prediction(problem, all_rows, shown, (), plain, plain),
         tuple(
-            _prediction(problem, all_rows, cause_names(cause_set), plain, remainder)
+            _prediction(problem, all_rows, shown, cause_names(cause_set), plain, remainder)
             for cause_set, remainder in zip(sets, after, strict=True)
         ),
     )
@@ -196,33 +201,41 @@ def _remainder(
         residual[~rows], columns[~rows], Nuisances(np.zeros((int((~rows).sum()), 0)))
     )
     remainder = residual[rows] - nuisance_columns[rows] @ among.fitted(residual[~rows])
-    root = np.linalg.cholesky(estimate.covariance)
-    drawn = np.random.default_rng(_SEED).standard_normal((_DRAWS, len(root)))
-    return remainder, remainder - drawn @ (columns[rows] @ root).T
+    drawn = np.random.default_rng(_SEED).standard_normal((_DRAWS, columns.shape[1]))
+    return remainder, remainder - drawn @ (columns[rows] @ estimate.root).T
+
+
+def _shown(problem: PendulumProblem, sets: Sequence[Fit]) -> BoolArray:
+    """Return which observations are of the kinds in which causes of the answer show most."""
+    answer, kinds, shown = sets[0], np.unique(problem.kind), []
+    for number in range(len(answer.candidates)):
+        own = answer.effect_index == number
+        change = answer.columns[:, own] @ answer.units[own]
+        shown.append(max(kinds, key=lambda kind: _rms(change[problem.kind == kind])))
+    return np.isin(problem.kind, shown)
 
 
 def _prediction(
     problem: PendulumProblem,
     rows: BoolArray,
+    shown: BoolArray,
     causes: tuple[str, ...],
     plain: tuple[FloatArray, FloatArray],
     remainder: tuple[FloatArray, FloatArray],
 ) -> WithheldPrediction:
-    kind = problem.kind[rows]
-    decay, period = kind == _DECAY, kind == _PERIOD
-    chosen = decay if decay.any() and not problem.driven else np.ones_like(decay)
+    kind, chosen = problem.kind[rows], shown[rows]
     absolute = remainder[0] * problem.uncertainty[rows]
     share, low, high = 0.0, 0.0, 0.0
     if causes:
-        share = share_gone(gap_of(plain[0][chosen]), gap_of(remainder[0][chosen]))
         old = gap_of(plain[0][chosen])
+        share = share_gone(old, gap_of(remainder[0][chosen]))
         shares = [share_gone(old, gap_of(draw[chosen])) for draw in remainder[1]]
         low, high = (float(value) for value in np.quantile(shares, (0.025, 0.975)))
     return WithheldPrediction(
         causes,
         _rms(remainder[0][chosen]),
-        _rms((absolute * problem.amplitude[rows])[decay]),
-        _rms(absolute[period]),
+        _rms((absolute * problem.amplitude[rows])[kind == _DECAY]),
+        _rms(absolute[kind == _PERIOD]),
         share,
         min(low, share),
         max(high, share),

@@ -35,6 +35,7 @@ CATALOGUE: Final[tuple[type[Any], ...]] = (
     instruments.SensorGain,
     instruments.SensorSign,
     instruments.SensorNoise,
+    instruments.SensorDrift,
     light_gates.FlagWidth,
     light_gates.GateOffset,
     light_gates.MissedPassages,

@@ -150,7 +150,7 @@ class AmplitudePeriod:
 class CubicRestoring:
     """Restoring that changes with the square of the displacement, as the righting arm of a hull."""
 
-    cubic: float = parameter(-0.5, -5.0, 5.0, "1/rad2 or 1/m2", "restoring is C q (1 + cubic q^2)")
+    cubic: float = parameter(-0.5, -50.0, 50.0, "1/rad2 or 1/m2", "restoring is C (q + cubic q^3)")
     coordinate: str = ""
 
     name = "nonlinear_restoring"

@@ -132,32 +132,55 @@ class SensorSign:
 
 @dataclass(frozen=True)
 class SensorNoise:
-    """White noise and a linear drift on a channel."""
+    """White noise on a channel."""
 
-    noise_rms: float = parameter(
-        1e-4, 0.0, 0.05, "rad or m", "standard deviation of each sample", starts=(0.0,), held=True
-    )
-    drift_per_s: float = parameter(0.0, -1e-3, 1e-3, "rad/s or m/s", "slope of the reading")
+    noise_rms: float = parameter(1e-4, 0.0, 0.05, "rad or m", "standard deviation of each sample")
     channel: str = ""
 
     name = "sensor_noise"
     stage = "acquisition"
-    summary = "noise of each sample, independent, and a drift"
+    summary = "noise of each sample, independent"
     signature = "white residual; scatter of T falls with record length^-3/2"
 
     def __call__(self, bench: PendulumBench) -> PendulumBench:
         """Return the test with the effect on."""
-        chosen = _sensors_of(bench, self.channel)
-
-        def noisy(how: Digitiser) -> Digitiser:
-            noise = math.hypot(how.noise_rms, self.noise_rms)
-            return replace(how, noise_rms=noise, drift_per_s=how.drift_per_s + self.drift_per_s)
-
-        changed = tuple(
-            noisy(how) if sensor in chosen else how
-            for sensor, how in zip(bench.sensors, bench.digitisers, strict=True)
+        return _digitisers(
+            bench,
+            self.channel,
+            lambda how: replace(how, noise_rms=math.hypot(how.noise_rms, self.noise_rms)),
         )
-        return replace(bench, digitisers=changed)
+
+
+@dataclass(frozen=True)
+class SensorDrift:
+    """A zero that goes on at an even rate, as a sensor or its amplifier warms."""
+
+    drift_per_s: float = parameter(1e-4, -1e-3, 1e-3, "rad/s or m/s", "slope of the reading")
+    channel: str = ""
+
+    name = "sensor_drift"
+    stage = "acquisition"
+    summary = "a straight line in time on top of the reading"
+    signature = "means rise evenly; amplitude and T as is"
+
+    def __call__(self, bench: PendulumBench) -> PendulumBench:
+        """Return the test with the effect on."""
+        return _digitisers(
+            bench,
+            self.channel,
+            lambda how: replace(how, drift_per_s=how.drift_per_s + self.drift_per_s),
+        )
+
+
+def _digitisers(
+    bench: PendulumBench, channel: str, change: Callable[[Digitiser], Digitiser]
+) -> PendulumBench:
+    chosen = _sensors_of(bench, channel)
+    changed = tuple(
+        change(how) if sensor in chosen else how
+        for sensor, how in zip(bench.sensors, bench.digitisers, strict=True)
+    )
+    return replace(bench, digitisers=changed)
 
 
 def _check_stamped(bench: PendulumBench, effect: str, channel: str) -> None:

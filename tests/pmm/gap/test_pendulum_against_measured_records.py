@@ -9,7 +9,6 @@ import pytest
 
 from analysis.gap.pendulum.causes import BEYOND_LINEAR, cause, causes_for
 from analysis.gap.pendulum.further import Reach, propose
-from analysis.gap.pendulum.laws import damping_laws, open_laws
 from analysis.gap.pendulum.problem import PendulumProblem
 from analysis.gap.pendulum.search import fit, weigh
 from analysis.gap.pendulum.verdict import CAUSE, TOLD_APART, UNTOLD, judge
@@ -66,14 +65,13 @@ def test_roll_decay_misses_damping_beyond_linear(name: str, tmp_path: Path) -> N
     causes = causes_for(problem.trials)
     weighed = weigh(problem, causes, most=2)
     verdict = judge(weighed)
-    assert verdict.by_class["inertia or stiffness"] < 0.01
-    if name == "second half":  # its decrement hardly changes: the law cannot be told
-        laws = damping_laws(weighed, verdict.best, causes)
-        assert {"linear", "any power"} <= {law.name for law in (laws[0], *open_laws(laws))}
+    if name == "second half":  # its decrement hardly changes
+        assert verdict.outcome == UNTOLD
         return
+    assert verdict.by_class["inertia or stiffness"] < 0.01
     assert verdict.outcome == CAUSE
     assert set(verdict.best.names) & set(BEYOND_LINEAR)
-    assert verdict.by_class["damping beyond linear"] > 0.99
+    assert verdict.by_class["damping beyond linear"] > 0.95
 
 
 @pytest.mark.slow

@@ -178,7 +178,7 @@ def test_a_record_that_cannot_be_the_bodys_is_refused(
 def test_nothing_is_added_where_the_answer_is_unknown(tmp_path: Path) -> None:
     path = recorded(tmp_path, decay_bench(AFLOAT, release=0.2), "roll", FLOATING)
     before = path.read_text()
-    words = ["gap", "add-pendulum", str(path), "--effects", "sensor_lag"]
+    words = ["gap", "add-pendulum", str(path), "--effects", "sensor_drift"]
     done = CliRunner().invoke(cli, words)
     assert done.exit_code == 1
     assert "nothing to add" in " ".join(done.stderr.split())

@@ -95,7 +95,8 @@ def test_offset_gain_noise_and_drift_do_what_they_say() -> None:
     effects = [
         make_effect("sensor_offset", offset=0.01),
         make_effect("sensor_gain", gain_error=0.05),
-        make_effect("sensor_noise", noise_rms=1e-3, drift_per_s=1e-4),
+        make_effect("sensor_noise", noise_rms=1e-3),
+        make_effect("sensor_drift", drift_per_s=1e-4),
     ]
     plain = simulate_decay(KVLCC2_ROLL, release=0.1, seed=5, duration_s=200.0).dataset
     noisy = simulate_decay(

@@ -33,7 +33,7 @@ def hung(half_m: float, line_m: float, truth: tuple[PendulumEffect, ...], seed: 
     hull = Suspension(1.0, line_m, half_m, 0.1 * k, k, k, 0.1 * k, linear=True)
     bench = bifilar_bench(hull, yaw_rad=0.1)
     omega = math.sqrt(hull.stiffness[2, 2] / hull.mass[2, 2])
-    empty = np.empty((5, 12))
+    empty = np.full((5, 12), np.nan)
     name = f"{half_m:.2f} {line_m:.2f}"
     trial = Trial(name, bench, "yaw", Windows(0.0, omega, 4, 12), empty, empty, scaled=True)
     observed = trial.simulate(truth)
@@ -95,7 +95,7 @@ def decayed(release: float, loss: float, seed: int) -> Trial:
     drag = make_effect("quadratic_drag", loss=loss)
     bench = decay_bench(afloat, release=release)
     windows = cut_into_windows(0.0, 40.0, 2.0)
-    empty = np.empty((5, windows.count))
+    empty = np.full((5, windows.count), np.nan)
     log_size, phase = Trial("", bench, "roll", windows, empty, empty).simulate([drag])[:2]
     at_s = windows.centres_s
     size = np.exp(np.interp(time_s, at_s, log_size))
