@@ -94,3 +94,10 @@ def parameters(best: Fit) -> dict[str, dict[str, dict[str, float]]]:
         each = axis.deviation * (abs(value) if axis.is_log else 1.0)
         rows[axis.parameter.name] = {"value": value, "uncertainty": each * float(spread[at])}
     return causes
+
+
+def fitted(best: Fit) -> Iterator[str]:
+    """Yield each parameter with the half of its 95 % interval."""
+    for name, values in parameters(best).items():
+        for key, estimate in values.items():
+            yield f"{name}: {key} = {estimate['value']:.4g} ± {2.0 * estimate['uncertainty']:.2g}"

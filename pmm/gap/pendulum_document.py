@@ -10,7 +10,6 @@ from analysis.gap.pendulum.diagnose import PendulumDiagnosis
 from analysis.gap.pendulum.laws import DampingLaw
 from analysis.gap.pendulum.search import cause_names
 from analysis.gap.pendulum.withheld import WithheldPrediction
-from analysis.gap.search.fit import Fit
 from pmm.document.content import (
     Column,
     Content,
@@ -28,7 +27,7 @@ from pmm.document.content import (
 )
 from pmm.document.notation import percent, written
 from pmm.gap import pendulum_figures as figures
-from pmm.gap.pendulum_conclusion import classes, parameters, ranking
+from pmm.gap.pendulum_conclusion import classes, fitted, parameters, ranking
 from pmm.gap.pendulum_examination import ExaminedPendulum
 from pmm.gap.pendulum_words import sentences
 
@@ -152,7 +151,10 @@ def _answer_contents(diagnosis: PendulumDiagnosis) -> Iterator[Content]:
     sets[" and ".join(cause_names(diagnosis.best))] = diagnosis.settled.best
     answers: tuple[Column[tuple[str, float]], ...] = (
         Column("answer", lambda row: row[0]),
-        Column("parameters (u)", lambda row: fitted(sets[row[0]]) if sets.get(row[0]) else ""),
+        Column(
+            "parameters (95 %)",
+            lambda row: "; ".join(fitted(sets[row[0]])) if row[0] in sets else "",
+        ),
         Column("probability", lambda row: row[1], written=_SHARE, number=True),
     )
     shares: tuple[Column[tuple[str, float]], ...] = (
@@ -164,15 +166,6 @@ def _answer_contents(diagnosis: PendulumDiagnosis) -> Iterator[Content]:
     yield Table("Answers", answers, tuple(ranking(diagnosis.weighed.answers)))
     yield Table("Classes and causes", shares, tuple(classes(diagnosis.verdict)))
     yield Table("Alternatives", ALTERNATIVES, diagnosis.alternatives, "alternatives")
-
-
-def fitted(fit: Fit) -> str:
-    """Return a set's parameters with their standard uncertainties."""
-    return "; ".join(
-        f"{name}: {key} = {value['value']:.4g} ± {value['uncertainty']:.2g}"
-        for name, rows in parameters(fit).items()
-        for key, value in rows.items()
-    )
 
 
 def _law_columns(diagnosis: PendulumDiagnosis) -> tuple[Column[DampingLaw], ...]:

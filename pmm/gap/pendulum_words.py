@@ -16,7 +16,7 @@ from analysis.gap.pendulum.swings import KINDS
 from analysis.gap.pendulum.verdict import TOLD_APART
 from analysis.inertia.spread import cause_statement
 from hardware.description.arrays import FloatArray
-from pmm.gap.pendulum_conclusion import PendulumConclusion, conclusion_of, parameters
+from pmm.gap.pendulum_conclusion import PendulumConclusion, conclusion_of, fitted
 from pmm.gap.words import OUTSIDE, listed
 
 _ALIKE: Final = 4  # causes that a sentence names
@@ -90,8 +90,8 @@ def _no_gap(diagnosis: PendulumDiagnosis) -> str:
     kinds = [row.kind for row in diagnosis.gap_by_kind if row.out_of_tolerance]
     if kinds:
         return f"Nothing that was considered explains the difference in {' and '.join(kinds)}"
-    fitted = any(row.gap for row in diagnosis.gap_by_kind)
-    once = " once what is known within tolerances is fitted," if fitted else ""
+    off = any(row.gap for row in diagnosis.gap_by_kind)
+    once = " once what is known within tolerances is fitted," if off else ""
     return f"No gap: the record and its simulation agree{once} within what the record can tell"
 
 
@@ -130,12 +130,7 @@ def _undecided(first: DampingLaw, rivals: Sequence[DampingLaw]) -> str:
 def how_large_it_is(diagnosis: PendulumDiagnosis) -> str:
     """Return by how much the simulation as it is stated is off, and the cause's own size."""
     sizes = [*_largest(diagnosis, _DECAY, _amplitude), *_largest(diagnosis, _PERIOD, _phase)]
-    estimates = [
-        f"{name}: {key} = {estimate['value']:.4g} ± {2.0 * estimate['uncertainty']:.2g}"
-        for name, values in parameters(diagnosis.settled.best).items()
-        for key, estimate in values.items()
-    ]
-    named = estimates if conclusion_of(diagnosis).adds else []
+    named = fitted(diagnosis.settled.best) if conclusion_of(diagnosis).adds else ()
     off = f"As it is stated, the simulation is off {' and '.join(sizes)}"
     return f"{'; '.join([off, *named])}."
 
@@ -158,11 +153,16 @@ def _stated(diagnosis: PendulumDiagnosis) -> FloatArray:
 
 
 def _amplitude(log_ratio: float) -> str:
-    return f"by up to {100.0 * abs(math.expm1(log_ratio)):.2g} % of its amplitude"
+    return f"by up to {_two_digits(100.0 * abs(math.expm1(log_ratio)))} % of its amplitude"
 
 
 def _phase(size_rad: float) -> str:
-    return f"by up to {abs(math.degrees(size_rad)):.2g} degrees of a swing in phase"
+    return f"by up to {_two_digits(abs(math.degrees(size_rad)))} degrees of a swing in phase"
+
+
+def _two_digits(value: float) -> str:
+    """Return a number with two digits that tell, and no power of ten."""
+    return f"{float(f'{value:.2g}'):g}"
 
 
 def what_to_do(diagnosis: PendulumDiagnosis, concluded: PendulumConclusion) -> str:

@@ -12,6 +12,7 @@ from scipy.stats import multivariate_normal
 from analysis.gap.inference.constants import VISIBLE
 from analysis.gap.inference.gaussian import (
     Nuisances,
+    Posterior,
     any_size,
     left_over,
     null_evidence,
@@ -126,3 +127,20 @@ def test_roots_make_the_nuisances_metric(seed: int) -> None:
     assert left_over(residual, nuisances) ** 2 == pytest.approx(residual @ inverse @ residual)
     root = rooted(nuisances, columns)
     assert root.T @ root == pytest.approx(columns.T @ inverse @ columns)
+
+
+@given(st.integers(0, 2**31), st.integers(1, 4), st.integers(0, 9))
+def test_a_root_of_a_covariance_is_one_however_well_parameters_are_told(
+    seed: int, count: int, decades: int
+) -> None:
+    """Up to a precision of 1e18 beside the prior's 1, where the inverse has lost definiteness."""
+    rng = np.random.default_rng(seed)
+    columns = rng.standard_normal((12, count)) * 10.0 ** rng.uniform(0.0, decades, count)
+    found = Posterior.of(columns.T @ columns, np.zeros(count)).root
+    square = found @ found.T
+    assert np.isfinite(square).all()
+    assert (np.linalg.eigvalsh(square) > -1e-12).all()
+    assert (np.diagonal(square) <= 1.0 + 1e-9).all()  # no wider than the prior
+    if decades < 3:
+        wanted = np.linalg.inv(np.eye(count) + columns.T @ columns)
+        assert square == pytest.approx(wanted, rel=1e-6, abs=1e-12)
