@@ -56,6 +56,7 @@ NAMES = (
     "gap_worlds",
     "gap_odds",
     "forced",
+    "decays",
     "gap_loop",
     "signs",
 )
