@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,59 +13,22 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from pmm.cli import cli
+from tests.analysis.gap.pendulum.decaying_bodies import TABLE, Released, written
 
 FloatArray = NDArray[np.float64]
-Moment = Callable[[float, float], float]  # by displacement and rate, besides the stated ones
-
-PERIOD_S, INERTIA = 1.8, 12.5
-OMEGA = 2.0 * math.pi / PERIOD_S
-RESTORING, VISCOUS = INERTIA * OMEGA**2, 2.0 * 0.03 * INERTIA * OMEGA
-TABLE = f"""[floating]
-inertia = 10.0
-added_inertia = 2.5
-restoring = {RESTORING:.9f}
-resistance = {{ viscous = {VISCOUS:.9f} }}
-"""
-NOISE = 1e-4
-
-
-def swung(
-    more: Moment = lambda _q, _v: 0.0, *, held: float = math.radians(10.0), swings: float = 20.0,
-    rate_hz: float = 50.0, tau_s: float = 0.0, memory: float = 0.0,
-) -> tuple[FloatArray, FloatArray]:  # fmt: skip
-    """Return times and displacements of the stated body with a moment besides, and a memory."""
-
-    def slope(_t: float, y: FloatArray) -> list[float]:
-        moment = VISCOUS * y[1] + RESTORING * y[0] + more(y[0], y[1]) + memory * y[2]
-        return [y[1], -moment / INERTIA, y[1] - (y[2] / tau_s if tau_s else 0.0)]
-
-    time_s = np.arange(round(swings * PERIOD_S * rate_hz) + 1) / rate_hz
-    span = (0.0, float(time_s[-1]))
-    kept = {"method": "DOP853", "rtol": 1e-10, "atol": 1e-12, "t_eval": time_s}
-    return time_s, solve_ivp(slope, span, [held, 0.0, 0.0], **kept).y[0]
 
 
 def told(
     folder: Path, time_s: FloatArray, values: FloatArray, *, table: str = TABLE,
-    tolerance: float = 1e-3, most: int = 2, noise: float = NOISE,
+    most: int = 2, noise: float = 1e-4,
 ) -> dict[str, Any]:  # fmt: skip
     """Return the document of a record with noise."""
-    noisy = values + np.random.default_rng(7).normal(0.0, noise, time_s.size)
-    rows = np.column_stack((time_s, noisy))
-    np.savetxt(folder / "decay.csv", rows, "%.8f", ",", header="time_s,roll", comments="")
-    tolerances = f"[tolerances]\ninertia = {tolerance}\nrestoring = {tolerance}\n"
-    record = '[measured]\nrecord = "decay.csv"\nchannel = "roll"\n'
-    file = folder / "decay.toml"
-    file.write_text(f'name = "decay"\n{record}{table}{tolerances}')
+    known = {"inertia": 1e-3, "restoring": 1e-3}
+    file = written(folder, time_s, values, known, table=table, noise=noise)
     words = ["gap", "pendulum", str(file), "--most", str(most), "--json"]
     done = CliRunner().invoke(cli, words, catch_exceptions=False)
     assert done.exit_code == 0, done.stderr
     return dict(json.loads(done.stdout))
-
-
-def drag(loss: float) -> Moment:
-    """Return quadratic drag by which 1/A grows by ``loss`` a cycle."""
-    return lambda _q, v: 0.375 * loss * INERTIA * abs(v) * v
 
 
 def size(found: dict[str, Any], cause: str, name: str) -> dict[str, float]:
@@ -77,7 +40,7 @@ def size(found: dict[str, Any], cause: str, name: str) -> dict[str, float]:
 @pytest.mark.parametrize("rate_hz", [10.0, 50.0, 400.0])
 def test_quadratic_drag_is_told_with_its_law_at_any_rate(tmp_path: Path, rate_hz: float) -> None:
     """A law of any power that comes out as 1 is no other law than the quadratic one."""
-    found = told(tmp_path, *swung(drag(0.4), rate_hz=rate_hz))
+    found = told(tmp_path, *Released(loss=0.4).record(rate_hz=rate_hz))
     assert found["said"][0].startswith("The cause: quadratic_drag")
     assert "cannot be told" not in found["said"][0]
     loss = size(found, "quadratic_drag", "loss")
@@ -87,7 +50,7 @@ def test_quadratic_drag_is_told_with_its_law_at_any_rate(tmp_path: Path, rate_hz
 @pytest.mark.slow
 def test_small_long_decays_are_no_dry_friction(tmp_path: Path) -> None:
     """A law that would stop the body is no better than one that is right."""
-    found = told(tmp_path, *swung(drag(0.3), held=math.radians(2.0), swings=40.0))
+    found = told(tmp_path, *Released(loss=0.3, held=math.radians(2.0)).record(40.0))
     laws = {row["name"]: row["log_ratio"] for row in found["laws"]}
     assert max(laws, key=lambda name: laws[name]) in ("quadratic", "cubic", "any power")
     assert all(ratio > -1e4 for ratio in laws.values())
@@ -97,7 +60,7 @@ def test_small_long_decays_are_no_dry_friction(tmp_path: Path) -> None:
 @pytest.mark.parametrize("lag_s", [0.05, 0.1])
 def test_a_sensor_that_lags_is_no_gap_of_a_decay(tmp_path: Path, lag_s: float) -> None:
     """Settled, it turns and scales a decay, as a release does."""
-    time_s, roll = swung()
+    time_s, roll = Released().record()
     kept = {"rtol": 1e-9, "atol": 1e-11, "t_eval": time_s, "max_step": 0.02}
     behind = solve_ivp(
         lambda t, y: (np.interp(t, time_s, roll) - y) / lag_s, (0.0, time_s[-1]), [0.0], **kept
@@ -108,21 +71,12 @@ def test_a_sensor_that_lags_is_no_gap_of_a_decay(tmp_path: Path, lag_s: float) -
 @pytest.mark.slow
 def test_a_hand_that_lets_go_slowly_is_no_gap(tmp_path: Path) -> None:
     """Its spring slackens over the first 0.6 s."""
-    held = math.radians(10.0)
-
-    def slope(t: float, y: FloatArray) -> list[float]:
-        hand = RESTORING * held * max(1.0 - t / 0.6, 0.0)
-        return [y[1], (hand - VISCOUS * y[1] - RESTORING * y[0]) / INERTIA]
-
-    time_s = np.arange(1801) / 50.0
-    kept = {"method": "DOP853", "rtol": 1e-10, "atol": 1e-12, "t_eval": time_s, "max_step": 0.1}
-    roll = solve_ivp(slope, (0.0, 36.0), [held, 0.0], **kept).y[0]
-    assert told(tmp_path, time_s, roll)["verdict"] == "none"
+    assert told(tmp_path, *Released(hand_s=0.6).record())["verdict"] == "none"
 
 
 @pytest.mark.slow
 def test_windows_with_holes_are_left_out_and_it_is_said(tmp_path: Path) -> None:
-    time_s, roll = swung(drag(0.4))
+    time_s, roll = Released(loss=0.4).record()
     holes = (np.abs(time_s - 10.3) < 1.0) | (np.abs(time_s - 21.1) < 1.0)
     there = ~holes
     found = told(tmp_path, time_s[there], roll[there])
@@ -137,7 +91,7 @@ def test_windows_with_holes_are_left_out_and_it_is_said(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_memory_of_the_water_is_damping_and_stiffness(tmp_path: Path) -> None:
     """A moment that forgets over half a second is both in one decay; neither alone explains it."""
-    found = told(tmp_path, *swung(memory=0.2 * RESTORING, tau_s=0.5))
+    found = told(tmp_path, *Released(memory=0.2, tau_s=0.5).record())
     assert found["classes"]["damping"] > 0.9
     assert found["classes"]["inertia or stiffness"] > 0.9
     assert found["verdict"] != "none"
@@ -211,7 +165,7 @@ def test_springs_that_harden_a_lot_are_found(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_what_is_at_the_end_of_its_range_is_said_to_be(tmp_path: Path) -> None:
-    time_s, roll = swung()
+    time_s, roll = Released().record()
     found = told(tmp_path, time_s, roll + 0.15, most=1)
     assert found["verdict"] == "unknown"  # no offset is plausible that is so large
     assert "is at an end of its plausible range" in " ".join(found["notes"])
