@@ -39,7 +39,8 @@ DAMPING: Final = (
     "damping",
 )
 BEYOND_LINEAR: Final = ("quadratic_drag", "cubic_damping", "power_drag")
-STIFFNESS: Final = ("inertia", "restoring", "amplitude_period", "nonlinear_restoring")
+LINEAR_PERIOD: Final = ("inertia", "restoring")
+STIFFNESS: Final = (*LINEAR_PERIOD, "amplitude_period", "nonlinear_restoring")
 DAMPED: Final = "damping"
 RESTORED: Final = "inertia and restoring"
 LINES: Final = "lines"

@@ -68,10 +68,14 @@ class PendulumDiagnosis:
 
     @property
     def foretells(self) -> float:
-        """Share of the gap, where it is least, that the best set foretells; NaN of no gap."""
+        """Share of the gap, where it is least, that the best set foretells.
+
+        NaN where there is no gap, or where what was fitted leaves open whether it shrinks at all.
+        """
         gaps = (regime for regime in self.regimes if regime.gap)
-        shares = [forecast.shrinkage for regime in gaps for forecast in regime.foretold[:1]]
-        return min(shares, default=math.nan)
+        best = [forecast for regime in gaps for forecast in regime.foretold[:1]]
+        told = (forecast.shrinkage for forecast in best if forecast.low > 0.0)
+        return min(told, default=math.nan)
 
     @property
     def control(self) -> tuple[str, ...]:

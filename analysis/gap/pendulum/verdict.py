@@ -15,7 +15,7 @@ from analysis.gap.inference.answers import (
     of_any,
 )
 from analysis.gap.inference.constants import ODDS
-from analysis.gap.pendulum.causes import BEYOND_LINEAR, DAMPING, STIFFNESS
+from analysis.gap.pendulum.causes import BEYOND_LINEAR, DAMPING, LINEAR_PERIOD, STIFFNESS
 from analysis.gap.pendulum.search import Weighed, cause_names
 from analysis.gap.search.fit import Fit, no_effect
 
@@ -81,9 +81,9 @@ def judge(weighed: Weighed) -> Verdict:
 
 
 def alike(weighed: Weighed, name: str) -> tuple[str, ...]:
-    """Return the causes that pass for one: laws of damping of its kind, and its twins."""
+    """Return the causes that pass for one: laws of its kind, and its twins in these records."""
     twins = weighed.background.shapes.alike.get(name, frozenset((name,)))
-    kin = next((kind for kind in (BEYOND_LINEAR, DAMPING) if name in kind), ())
+    kin = next((kind for kind in (BEYOND_LINEAR, DAMPING, LINEAR_PERIOD) if name in kind), ())
     return tuple(sorted({name, *twins, *kin}))
 
 
