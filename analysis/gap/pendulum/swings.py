@@ -112,7 +112,7 @@ def _fit_swings(
     since_s: FloatArray, values: FloatArray, windows: Windows, omega_rad_s: float, steady: bool
 ) -> FloatArray:
     swings = np.full((len(KINDS), windows.count), np.nan)
-    inverses: dict[tuple[int, float], FloatArray] = {}  # windows sampled alike share theirs
+    inverses: dict[bytes, FloatArray] = {}  # windows sampled alike share theirs
     edges = np.searchsorted(since_s, windows.length_s * np.arange(windows.count + 1) - 1e-9)
     apart_s = float(np.median(np.diff(since_s)))
     hole_s = max(_HOLE * windows.length_s / windows.swings, 2.0 * apart_s)
@@ -121,8 +121,8 @@ def _fit_swings(
         good = np.isfinite(values[inside])
         t = since_s[inside][good] - centre
         if t.size >= _SAMPLES and _longest_hole(t, windows) < hole_s:
-            key = (t.size, round(float(t[0] + t[-1]) * omega_rad_s, 9))
-            if key not in inverses or t.size < good.size:
+            key = np.round(t * omega_rad_s, 9).tobytes()
+            if key not in inverses:
                 inverses[key] = np.asarray(
                     np.linalg.pinv(_terms(t, omega_rad_s, steady)), np.float64
                 )
