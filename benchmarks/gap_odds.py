@@ -19,7 +19,6 @@ from hardware.description.arrays import FloatArray
 
 _LEAST: Final = 1e-4  # probability below which a right answer costs no more: ln gives 9.2
 _SURE: Final = 0.9
-_TOLERANCE: Final = 1e-3  # of the fitted log loss
 
 Odds = Mapping[str, float]
 
@@ -77,8 +76,7 @@ def fitted(lines: Sequence[Line]) -> dict[str, float]:
     found = minimize(
         loss_at,
         np.log([start[name] for name in moved]),
-        method="Nelder-Mead",
-        options={"fatol": _TOLERANCE, "xatol": 1e-2},
+        method="L-BFGS-B",
     )
     return odds_at(found.x)
 
