@@ -5,6 +5,7 @@ Marks alone are kept, those of the diagnosis that made the hypotheses too: where
 """
 
 import json
+import math
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
@@ -12,18 +13,17 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
-import numpy as np
-
 from analysis.gap.inference.constants import ODDS
 from benchmarks.boards.beside import ask, marks_by_row, row_means
 from benchmarks.boards.worlds import made
+from pmm.gap.answer import SCHEMA as ANSWER_SCHEMA
 from tests.sealed.answering import DIAGNOSIS
-from tests.sealed.learning.calibration import LEAST, Conformal, Isotonic
+from tests.sealed.learning.calibration import Conformal, Isotonic
 from tests.sealed.learning.campaigns import LOOKS
 from tests.sealed.learning.rows import boosted, with_shares
-from tests.sealed.scoring.answers import VERDICTS
+from tests.sealed.scoring.answers import NONE, VERDICTS, Answer
 from tests.sealed.scoring.by_world import Figure, Marks, figures_of
-from tests.sealed.scoring.keys import read_truth
+from tests.sealed.scoring.keys import Truth, read_truth
 
 Line = dict[str, Any]
 
@@ -93,23 +93,18 @@ def calibrations(
         Of each case, how probable each answer is.
     """
     pairs = [
-        (share, float(name in line["right"]))
+        (Answer(ANSWER_SCHEMA, "", said, {}), _truth(line))
         for line, said in zip(lines, shares, strict=True)
-        for name, share in said.items()
     ]
-    isotonic = Isotonic.fitted([share for share, _ in pairs], [hit for _, hit in pairs])
-    strange: dict[str, list[float]] = {"any": []}
-    for line, said in zip(lines, shares, strict=True):
-        group = line["verdict"] if line["verdict"] in VERDICTS else "effect"
-        best = max((said[name] for name in line["right"]), default=0.0)
-        for one in ("any", group):
-            strange.setdefault(one, []).append(1.0 - best)
-    kept = {
-        name: np.sort(values)
-        for name, values in strange.items()
-        if name == "any" or len(values) >= LEAST
-    }
-    return isotonic, Conformal(kept)
+    return Isotonic.of(pairs), Conformal.of(pairs)
+
+
+def _truth(line: Line) -> Truth:
+    """Return a key that calls right what a line does; of a gap that no answer names, nothing."""
+    named = tuple(tuple(name.split("+")) for name in line["right"] if name not in VERDICTS)
+    verdict = line["verdict"]
+    right = named or ((("",),) if verdict == "gap" else ())
+    return Truth("", verdict, verdict == NONE, verdict, math.inf, right, (), {}, {})
 
 
 def figures_by_row(lines: Sequence[Line]) -> Iterator[tuple[str, dict[str, Figure], float]]:

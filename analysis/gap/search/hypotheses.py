@@ -20,11 +20,11 @@ from analysis.gap.search.engine import (
     fit_pairs,
     looked_at,
 )
-from analysis.gap.search.first_look import HIDDEN
+from analysis.gap.search.first_look import HIDDEN, FirstLook
 from analysis.gap.search.fit import Fit
 from analysis.gap.search.joint import fit_jointly
 from analysis.gap.search.linear_hypothesis import in_form, with_forms
-from analysis.gap.search.weighed import WeighedHypotheses, unfitted, weighed
+from analysis.gap.search.weighed import WeighedHypotheses, weighed
 from sim.effects.effect import Effect
 
 # What these change are the coefficients, and those are free in every hypothesis.
@@ -62,7 +62,7 @@ def weigh(
     pairs = _complete_forms(problem, free, fit_pairs(problem, singles, looks, none, engine))
     least = min((fit.cost for fit in pairs), default=math.inf)
     singles = _complete_forms(problem, free, alone_again(problem, singles, pairs), least)
-    singles += unfitted(looks, singles)
+    singles += _unfitted(looks, singles)
     progress("weighing")
     sought = np.array([number.is_sought for number in free], dtype=bool)
     beside = background(problem, looked, sought)
@@ -81,3 +81,12 @@ def _complete_forms(
         least = min(least, moved[-1].cost)
     all_fits = [*(with_forms(problem, fit) for fit in moved), *formed[LEADERS:]]
     return sorted(all_fits, key=lambda fit: -fit.log_evidence)
+
+
+def _unfitted(looks: Sequence[FirstLook], fits: Sequence[Fit]) -> list[Fit]:
+    """Return the effects that did not promise enough to be fitted, as they were looked at.
+
+    They are less probable for that, and not impossible.
+    """
+    names = {fit.names[0] for fit in fits}
+    return [look.fit for look in looks if look.fit is not None and look.name not in names]

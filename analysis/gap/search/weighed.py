@@ -96,12 +96,3 @@ def weighed(
     return WeighedHypotheses(
         problem, ranked, tuple(looked), background, answer_set, count, concealed
     )
-
-
-def unfitted(looks: Sequence[FirstLook], fits: Sequence[Fit]) -> list[Fit]:
-    """Return the effects that did not promise enough to be fitted, as they were looked at.
-
-    They are less probable for that, and not impossible.
-    """
-    names = {fit.names[0] for fit in fits}
-    return [look.fit for look in looks if look.fit is not None and look.name not in names]
