@@ -8,14 +8,19 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from benchmarks.boards.beside import CASES as FEW
-from benchmarks.boards.beside import figures_beside
 from benchmarks.boards.learned import figures_by_row
+from benchmarks.boards.row_figures import SHOWN, figures_beside, rows_beside
 from benchmarks.boards.rows import Line, kept
 from benchmarks.boards.worlds import CASES, WORLDS, marks_in
 from benchmarks.outcome import Benchmark, Outcome, Report, Row
 from tests.sealed.answering import DIAGNOSIS
 from tests.sealed.scoring.by_world import Figure, Held, figures_of, held_to
 
+_BESIDE: Final = {
+    "top_1_by_class": "top-1 by class",
+    "stage": "stage",
+    "unknown": "unknown said",
+}
 _LEARNED: Final = {
     "class": "top-1 by class",
     "stage": "stage",
@@ -58,24 +63,36 @@ def _with_count(figure: Figure) -> str:
     return "-" if value is None else f"{value:.2f} ({low:.2f} to {high:.2f}) of {count}"
 
 
-def _same(lines: Sequence[Line], learned: Sequence[Line]) -> str:
-    """Say in how many cases the diagnosis beside rows that learn has the marks of the worlds'."""
+def _beside_rows(lines: Sequence[Line]) -> Iterator[Row]:
+    for world in WORLDS:
+        there = [line for line in lines if line["campaign"] == world]
+        for name, figures, mean in rows_beside(there):
+            shown = {_BESIDE[key]: _with_count(figures[key]) for key in SHOWN}
+            whole = "-" if mean is None else f"{mean:.3f}"
+            yield {"world": world, "row": name, **shown, "mean of columns": whole}
+
+
+def _same(lines: Sequence[Line], again: Sequence[Line]) -> str:
+    """Say in how many cases another board's diagnosis has the marks of the worlds' lines."""
     marks = {(one["campaign"], one["seed"]): one for one in lines}
     pairs = [
         (marks[key], one["rows"][DIAGNOSIS])
-        for one in learned
+        for one in again
         if (key := (one["campaign"], one["seed"])) in marks
     ]
     same = sum(
-        whole["stated"] == again["stated"]
-        and all(whole["values"][key] == again["values"][key] for key in whole["values"])
-        for whole, again in pairs
+        whole["stated"] == other["stated"]
+        and all(whole["values"][key] == other["values"][key] for key in whole["values"])
+        for whole, other in pairs
     )
+    return f"The diagnosis has the marks of the worlds' lines in {same} of {len(pairs)} cases."
+
+
+def _trained(learned: Sequence[Line]) -> str:
     trained = ", ".join(sorted({str(one["trained_on"]) for one in learned}))
     return (
         f"Rows that learn: boosted ones trained on {trained} campaigns of worlds A and B, "
-        "calibrated ones fitted to the cases of the prior odds. The diagnosis beside them has the "
-        f"marks of the worlds' lines in {same} of {len(pairs)} cases."
+        "calibrated ones fitted to the cases of the prior odds."
     )
 
 
@@ -101,10 +118,16 @@ def counted(
         "cases of each world: `python -m benchmarks.boards beside` goes on with them.",
         *(f"Frozen at commit {one}, whose hash is the seed." for one in _frozen(lines)),
     ]
+    if beside:
+        notes.append(
+            f"Rows beside, SNR from 10: the oracle is told each case's tolerances and forms; the "
+            f"linear matcher, whose share is expected, knows the key. {_same(lines, beside)}"
+        )
     if learned:
-        notes.append(_same(lines, learned))
+        notes.append(f"{_trained(learned)} {_same(lines, learned)}")
     tables = {
         "Figures by world": list(_rows(lines, beside)),
+        "Rows beside": list(_beside_rows(beside)),
         "Rows that learn": list(_learned_rows(learned)),
     }
     measured = {f"cases_{world.lower()}": float(count) for world, count in there.items() if count}

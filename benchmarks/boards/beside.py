@@ -4,12 +4,12 @@ A case is made anew from the seed of the worlds' lines, answered by every row an
 or shorter recorder would have it; marks alone are kept, as with :mod:`benchmarks.boards.worlds`.
 """
 
+import json
 import time
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
-
-import numpy as np
 
 from benchmarks.boards.worlds import known_effects, made
 from tests.sealed.answering import DIAGNOSIS, Asked, answer_case
@@ -17,27 +17,18 @@ from tests.sealed.oracle import answered_as, told
 from tests.sealed.rows import known_rows
 from tests.sealed.scoring.answers import UNKNOWN, Answer, read_answer
 from tests.sealed.scoring.board import Board, Row
-from tests.sealed.scoring.by_world import (
-    ORACLE,
-    PAIRED,
-    Figure,
-    Marks,
-    figures_of,
-    marks_of,
-    mean_figure,
-)
-from tests.sealed.scoring.columns import COLUMNS
-from tests.sealed.scoring.intervals import auroc
+from tests.sealed.scoring.by_world import ORACLE, class_probability, marks_of
+from tests.sealed.scoring.columns import COLUMNS, Entry
 from tests.sealed.scoring.keys import Truth, read_truth
-from tests.sealed.scoring.rows import BINS, mean_of
+from tests.sealed.scoring.rows import BINS
 from tests.sealed.scoring.score import entries_of, floors_of
-from tests.sealed.variations import VARIATIONS, agreements, varied
+from tests.sealed.variations import VARIATIONS, agreements, alike, fits, varied, vary
 
 Line = dict[str, Any]
 
 CASES: Final = 100  # of each world: its first ones
 _VARIED: Final = "varied"
-_SAMPLED: Final = tuple(one.name for one in VARIATIONS if one.part == 1.0)
+_CUT: Final = next(one for one in VARIATIONS if one.part < 1.0)
 
 
 def compared(world: str, index: int, commit: str, size: int) -> Line:
@@ -60,22 +51,58 @@ def compared(world: str, index: int, commit: str, size: int) -> Line:
         ask(folder, name, (DIAGNOSIS, *known_rows()))
         ask(told(folder), name, (DIAGNOSIS,))
         answered_as(folder, folder / ORACLE)
-        for again in varied(folder, folder / _VARIED, 1):
-            ask(folder / _VARIED, again, (DIAGNOSIS,))
+        for other in varied(folder, folder / _VARIED, 1):
+            ask(folder / _VARIED, other, (DIAGNOSIS,), proposes=False)
         truth = read_truth(folder / "keys" / name / "truth.json")
-        alike = {
-            one.name: [one.same_class, one.near]
-            for one in agreements(folder, folder / _VARIED)
-        }  # fmt: skip
+        matched = _matched(_read(folder, DIAGNOSIS, truth), truth)
+        both = agreements(folder, folder / _VARIED)
+        again = {one.name: [one.same_class, one.near] for one in both}
+        cut = _cut(folder, truth)
         rows = dict(marks_by_row(folder, truth, (DIAGNOSIS, ORACLE, *known_rows())))
-    line = {"campaign": world, "seed": index, "frozen": commit, "rows": rows, "alike": alike}
-    counts = {"counts": BINS[-1].holds(truth), "verdict": truth.verdict}
-    return {**line, **counts, "cpu_s": round(time.process_time() - began, 2)}
+    line = {"campaign": world, "seed": index, "frozen": commit, "rows": rows, "alike": again}
+    line |= {"counts": BINS[-1].holds(truth), "verdict": truth.verdict}
+    taken_s = round(time.process_time() - began, 2)
+    return {**line, "matched": matched, "cut": cut, "cpu_s": taken_s}
 
 
-def ask(board: Path, case: str, rows: Sequence[str]) -> None:
-    """Have a case answered by some rows of a board."""
-    asked = Asked(board, case, tuple(rows))
+def _cut(folder: Path, truth: Truth) -> list[float]:
+    """Return whether a case that is cut has the class of the whole, and the oracle's probabilities.
+
+    These are of the class that it says of the whole and of the cut case. Nothing where the case is
+    too short to be cut.
+    """
+    whole, cut = truth.case, f"{truth.case}.{_CUT.name}"
+    if not fits(folder / "cases" / whole, _CUT):
+        return []
+    room = folder / ORACLE / _VARIED
+    vary(folder / ORACLE / "cases" / whole, room / "cases" / cut, _CUT)
+    ask(room, cut, (DIAGNOSIS,), proposes=False)
+    sure = (
+        _sure(folder / f"answers-{ORACLE}" / f"{whole}.json", truth),
+        _sure(room / "answers" / f"{cut}.json", replace(truth, case=cut)),
+    )
+    ours, key = folder / "answers" / f"{whole}.json", folder / "keys" / whole / "truth.json"
+    files = ours, folder / _VARIED / "answers" / f"{cut}.json", key
+    same, _ = alike(*(json.loads(file.read_text()) for file in files))
+    return [float(same), *sure]
+
+
+def _sure(file: Path, truth: Truth) -> float:
+    """Return the probability of the class that an answer says; 0 if it failed."""
+    answer = read_answer(file, known_effects(), truth)
+    return 0.0 if answer.failed else class_probability(answer)
+
+
+def _matched(answer: Answer, truth: Truth) -> dict[str, float]:
+    """Return what the linear matcher of the key reaches in each column that the case is in."""
+    entry, reached = Entry(answer, truth), truth.ceiling or {}
+    columns = [one for one in COLUMNS if one.ceiling in reached and tuple(one.values(entry))]
+    return {one.key: value for one in columns if (value := reached[str(one.ceiling)]) is not None}
+
+
+def ask(board: Path, case: str, rows: Sequence[str], *, proposes: bool = True) -> None:
+    """Have a case answered by some rows of a board; a further run is a column of these alone."""
+    asked = Asked(board, case, tuple(rows), proposes=proposes)
     for row in asked.rows:
         asked.target(row).parent.mkdir(exist_ok=True)
     answer_case(asked)
@@ -103,48 +130,3 @@ def marks_by_row(folder: Path, truth: Truth, names: Sequence[str]) -> Iterator[t
 def _read(folder: Path, row: str, truth: Truth) -> Answer:
     target = Asked(folder, truth.case, (row,)).target(row)
     return read_answer(target, known_effects(), truth)
-
-
-def figures_beside(lines: Sequence[Line]) -> dict[str, Figure]:
-    """Return the figures of a world's lines that take other rows, or the case again."""
-    marks = {
-        name: [Marks(one["is_clear"], one["values"], one["stated"]) for one in row]
-        for name, row in _rows(lines).items()
-        if name in (DIAGNOSIS, ORACLE)
-    }
-    out = {key: one for key, one in figures_of(marks).items() if key in PAIRED} if marks else {}
-    alike = [line["alike"][name] for line in lines for name in _SAMPLED if name in line["alike"]]
-    for at, key in enumerate(("invariance_class", "invariance_probability")):
-        out[key] = mean_figure(np.array([float(one[at]) for one in alike]))
-    means = row_means([line for line in lines if line["counts"]])
-    others = [mean for name, mean in means.items() if name not in (DIAGNOSIS, ORACLE)]
-    if others:
-        ahead = means[DIAGNOSIS] - max(others)
-        out["ahead_of_others"] = (ahead, ahead, ahead, len(lines))
-    return out
-
-
-def row_means(lines: Sequence[Line]) -> dict[str, float]:
-    """Return the mean of columns of every row."""
-    found = {name: _figures(lines, row) for name, row in _rows(lines).items()}
-    shown = {key for row in found.values() for key in row}
-    return {name: mean_of(row, shown) for name, row in found.items()}
-
-
-def _rows(lines: Sequence[Line]) -> dict[str, list[Line]]:
-    return {
-        name: [line["rows"][name] for line in lines] for name in (lines[0]["rows"] if lines else ())
-    }
-
-
-def _figures(lines: Sequence[Line], row: Sequence[Line]) -> dict[str, float]:
-    found = {
-        one.key: one.figure([x for mark in row for x in mark["values"][one.key]]) for one in COLUMNS
-    }
-    verdicts = [line["verdict"] for line in lines]
-    inside, outside = (
-        [mark["unknown"] for mark, verdict in zip(row, verdicts, strict=True) if verdict == which]
-        for which in (UNKNOWN, "gap")
-    )
-    found["auroc"] = auroc(inside, outside)
-    return {key: figure.value for key, figure in found.items() if figure is not None}

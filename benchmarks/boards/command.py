@@ -8,7 +8,6 @@ from pathlib import Path
 
 from benchmarks.boards.rows import (
     EVERY,
-    LEARNED,
     RESULTS,
     SEALED,
     SEEDED_BY,
@@ -37,7 +36,7 @@ def main(arguments: Sequence[str]) -> int:
     seeded = rows or kept(SEEDED_BY.get(request.board, ""), request.output)
     if request.board in SEALED:
         jobs = [replace(job, frozen=frozen(seeded)) for job in jobs]
-    if request.board == LEARNED:
+    if request.board in SEEDED_BY:
         jobs = [replace(job, frozen=_seed(seeded), training=request.training) for job in jobs]
     todo = list(missing(jobs, rows, now if request.again else None))
     print(

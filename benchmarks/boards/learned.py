@@ -14,7 +14,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from analysis.gap.inference.constants import ODDS
-from benchmarks.boards.beside import ask, marks_by_row, row_means
+from benchmarks.boards.beside import ask, marks_by_row
+from benchmarks.boards.row_figures import row_means
 from benchmarks.boards.worlds import made
 from pmm.gap.answer import SCHEMA as ANSWER_SCHEMA
 from tests.sealed.answering import DIAGNOSIS

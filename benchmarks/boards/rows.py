@@ -16,11 +16,11 @@ FOLDERS: Final = 10_000  # mutated folders that go through the door
 TYPED: Final = 300  # of them through whole commands
 _SLICES: Final[Mapping[str, tuple[int, int]]] = {"mutations": (FOLDERS, 50), "commands": (TYPED, 5)}
 _WORLDS, _BESIDE, _LOOPS, _WEIGHINGS = "worlds", "beside", "loops", "weighings"
-LEARNED: Final = "learned"
-SEALED: Final = (_WORLDS, _BESIDE, _LOOPS)
-SEEDED_BY: Final = {_BESIDE: _WORLDS, LEARNED: _WORLDS}  # the board whose cases these are
+_LEARNED: Final = "learned"
+SEALED: Final = (_WORLDS, _LOOPS)
+SEEDED_BY: Final = {_BESIDE: _WORLDS, _LEARNED: _WORLDS}  # the board whose cases these are
 BOARDS: Final = ("nulls", "friction", *_SLICES)
-EVERY: Final = (*BOARDS, *SEALED, LEARNED, _WEIGHINGS)
+EVERY: Final = (*BOARDS, *SEALED, *SEEDED_BY, _WEIGHINGS)
 
 Line = dict[str, Any]
 
@@ -29,7 +29,7 @@ Line = dict[str, Any]
 class Job:
     """A case of a board, or a slice of mutated folders: seeds ``first`` to before ``stop``.
 
-    ``frozen`` is the commit that is measured, for sealed cases alone; ``training`` is the folder of
+    ``frozen`` is the commit whose hash is the seed of sealed cases; ``training`` is the folder of
     the campaigns that rows learn from.
     """
 
@@ -79,7 +79,7 @@ def _counts(board: str) -> Mapping[str, int]:
     """Return how many seeds of each campaign, or cases of each world, are asked for."""
     if board == _WORLDS:
         return dict.fromkeys(WORLDS, 2 * CASES)
-    if board in (_BESIDE, LEARNED):
+    if board in SEEDED_BY:
         return dict.fromkeys(WORLDS, beside.CASES)
     if board == _LOOPS:
         return dict.fromkeys(loops.WORLDS, loops.CASES)
@@ -100,7 +100,7 @@ def measured(job: Job) -> Line:
         return marked(job.campaign, job.first, job.frozen)
     if job.board == _BESIDE:
         return beside.compared(job.campaign, job.first, job.frozen, CASES)
-    if job.board == LEARNED:
+    if job.board == _LEARNED:
         return learned.answered(job.campaign, job.first, job.frozen, CASES, Path(job.training))
     if job.board == _LOOPS:
         return loops.pursued(job.campaign, job.first, job.frozen)

@@ -1,12 +1,14 @@
 """What stands beside the diagnosis: kept marks against a board's own steps, and by hand."""
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from benchmarks.boards.beside import compared, figures_beside, row_means
+from benchmarks.boards.beside import compared
+from benchmarks.boards.row_figures import MATCHER, figures_beside, row_means, rows_beside
 from benchmarks.boards.rows import jobs_of
 from tests.sealed.board import generate
 from tests.sealed.board import jobs_of as cases_of
@@ -22,7 +24,9 @@ from tests.sealed.variations import agreements, varied
 _COMMIT = "2b"  # a development seed
 
 
-def _line(ours: float, theirs: float, alike: list[bool], *, said: float = 0.0) -> dict[str, Any]:
+def _line(
+    ours: float, theirs: float, alike: list[bool], *, said: float = 0.0, cut: Sequence[float] = ()
+) -> dict[str, Any]:
     def mark(right: float) -> dict[str, Any]:
         values: dict[str, list[float]] = {one.key: [] for one in COLUMNS}
         values |= {"top_1_by_class": [right], "stage": [1.0]}
@@ -30,7 +34,8 @@ def _line(ours: float, theirs: float, alike: list[bool], *, said: float = 0.0) -
 
     rows = {"diagnosis": mark(ours), "oracle": mark(theirs), "no-gap": mark(0.0)}
     kept = {"thin-2": alike, "cut": [False, False]}
-    return {"campaign": "A", "rows": rows, "alike": kept, "counts": True, "verdict": "gap"}
+    line = {"campaign": "A", "rows": rows, "alike": kept, "counts": True, "verdict": "gap"}
+    return {**line, "matched": {"top_1_by_class": 0.5, "stage": 0.75}, "cut": list(cut)}
 
 
 @pytest.mark.slow
@@ -50,6 +55,17 @@ def test_figures_are_those_by_hand() -> None:
     assert row_means(lines) == pytest.approx({"diagnosis": 0.75, "oracle": 0.875, "no-gap": 0.5})
     assert found["ahead_of_others"][0] == pytest.approx(0.25)
     assert {"class", "false_alarms"}.isdisjoint(found)
+    rows = {name: (figures, mean) for name, figures, mean in rows_beside(lines)}
+    assert list(rows) == ["diagnosis", "oracle", "no-gap", MATCHER]
+    assert rows["oracle"][0]["top_1_by_class"][0] == 0.75
+    assert rows[MATCHER][0]["stage"][0] == 0.75
+    assert rows[MATCHER][0]["unknown"][3] == 0
+
+
+def test_a_cut_case_counts_where_the_oracle_is_sure_of_both() -> None:
+    said = ([1.0, 0.95, 0.9], [0.0, 0.99, 0.92], [0.0, 0.5, 0.95], [1.0, 0.95, 0.2], ())
+    found = figures_beside([_line(1.0, 1.0, [True, True], cut=one) for one in said])
+    assert (found["invariance_cut"][0], found["invariance_cut"][3]) == (0.5, 2)
 
 
 def test_nothing_is_said_of_no_lines() -> None:

@@ -1,4 +1,4 @@
-"""The oracle of a board: the diagnosis itself, told the tolerances of the board's world."""
+"""The oracle of a board: the diagnosis itself, told the true tolerances and forms of each case."""
 
 import json
 import shutil
@@ -9,13 +9,14 @@ from pathlib import Path
 from pmm.gap.case import CASE_FILE, Case
 from tests.sealed.generator.toml import as_toml
 from tests.sealed.scoring.by_world import ORACLE
+from tests.sealed.true_forms import write_forms
 
 TABLE = "tolerances"
 """Table of the case's file that states tolerances."""
 
 
 def told(board: Path) -> Path:
-    """Write the board's cases again with the tolerances of its keys; return their folder."""
+    """Write the board's cases again with what their keys tell; return their folder."""
     output = board / ORACLE
     for case in sorted((board / "cases").iterdir()):
         target = output / "cases" / case.name
@@ -27,6 +28,7 @@ def told(board: Path) -> Path:
             shutil.copytree(case, made)
             file = made / CASE_FILE
             file.write_text(stating(file.read_text(), truth.get("tolerances", {})))
+            write_forms(truth, made)
             made.rename(target)
     return output
 

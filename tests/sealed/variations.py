@@ -95,7 +95,7 @@ def vary(case: Path, target: Path, variation: Variation) -> None:
             _netcdf(file, target / file.name, variation)
         elif file.name.endswith(".csv.gz"):
             _csv(file, target / file.name, variation)
-        elif beside or file.suffix == ".toml":
+        elif beside or file.suffix in (".toml", ".json"):
             shutil.copy(file, target / file.name)
 
 
@@ -213,14 +213,14 @@ def agreements(board: Path, output: Path) -> list[Agreement]:
             null = truth["verdict"] == "none"
             if null or truth["snr"] * variation.part**0.5 >= 10.0:
                 own = _answer(board / "answers" / f"{name}.json")
-                pairs.append(_alike(own, _answer(path), truth))
+                pairs.append(alike(own, _answer(path), truth))
         if pairs:
             same, near = np.mean(np.array(pairs, dtype=float), axis=0)
             out.append(Agreement(variation.name, len(pairs), float(same), float(near)))
     return out
 
 
-def _alike(own: dict[str, Any], other: dict[str, Any], truth: dict[str, Any]) -> tuple[bool, bool]:
+def alike(own: dict[str, Any], other: dict[str, Any], truth: dict[str, Any]) -> tuple[bool, bool]:
     """Return whether the class is the same, and whether its probability is within 0.1."""
     shares, theirs = own["probabilities"], other["probabilities"]
     if not shares or not theirs:

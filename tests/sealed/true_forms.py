@@ -1,0 +1,180 @@
+"""The forms that effects truly have, for the oracle: what each changes of its case's own runs.
+
+A case is made again from its key and recorded with each of its effects and without any: what
+repeats with hardly any noise, lines and scatter on two draws of the case's own. The diagnosis's own
+observation of both tells what the effect changes; a hypothesis that names it says so too, whatever
+form the catalogue knows.
+"""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import fields, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any, Final
+from unittest.mock import patch
+
+import numpy as np
+
+from analysis.gap.observe.components import (
+    SETTLING,
+    STEADY_PARTS,
+    Component,
+    Part,
+    Stack,
+)
+from hardware.description.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from analysis.gap.forward.problem import Problem
+    from analysis.gap.search.fit import Fit
+    from tests.sealed.generator.case import Case
+
+FILE: Final = "forms.json"
+"""What a told case has beside its campaign."""
+
+Shown = Mapping[str, Mapping[Component, float]]
+"""What is observed, by run and component."""
+
+_QUIET: Final = 1e-3  # noise and steps over those of the case
+_DRAWS: Final = 2  # of the noise
+_REPEATING: Final = (*STEADY_PARTS, *SETTLING)
+
+Changes = Mapping[str, Mapping[Component, float]]
+"""What an effect changes, by run and component."""
+
+
+def write_forms(truth: Mapping[str, Any], folder: Path) -> None:
+    """Write what each effect of a key changes into the folder of its case; nothing without any."""
+    from tests.sealed.generator.case import make
+
+    if not truth.get("effects"):
+        return
+    world = truth.get("world", "A")
+    case = make(int(truth["seed"]), truth["index"], null=truth["null"], where=world)
+    kept = {
+        name: {
+            run: [[one.channel, one.part.value, one.order, change] for one, change in row.items()]
+            for run, row in changes.items()
+        }
+        for name, changes in changes_of(case).items()
+    }
+    (folder / FILE).write_text(json.dumps(kept))
+
+
+def read_forms(folder: Path) -> dict[str, Changes]:
+    """Return what is told in the folder of a case, by effect; nothing if it is no told one."""
+    file = folder / FILE
+    kept = json.loads(file.read_text()) if file.exists() else {}
+    return {
+        name: {
+            run: {Component(channel, Part(part), order): change
+                  for channel, part, order, change in rows}
+            for run, rows in changes.items()
+        }
+        for name, changes in kept.items()
+    }  # fmt: skip
+
+
+def changes_of(case: "Case") -> dict[str, Changes]:
+    """Return what each effect of a case changes by itself."""
+    from tests.sealed.generator.background import with_all
+
+    usual = with_all(case.situation.parameters, case.always)
+    records = [
+        _quiet(case),
+        *(replace(case, seed=case.seed + draw) for draw in range(1, 1 + _DRAWS)),
+    ]
+    without = [_observed(one, usual) for one in records]
+    out: dict[str, Changes] = {}
+    for sized in case.content.effects:
+        there = [_observed(one, sized.put(usual)) for one in records]
+        out[sized.effect.name] = {
+            run.name: _changes(there, without, run.name) for run in case.campaign.runs
+        }
+    return out
+
+
+def _observed(case: "Case", parameters: FloatArray) -> Shown:
+    """Return what the diagnosis observes of a case's runs in another reality."""
+    from pmm.gap.load import load_campaign
+    from tests.sealed.generator.files import write_open
+
+    with TemporaryDirectory() as room:
+        write_open(replace(case, parameters=parameters), Path(room))
+        loaded = load_campaign(Path(room) / case.name)
+    runs = (*loaded.runs, *loaded.at_rest)
+    return {
+        run.name: dict(zip(run.observed.components, run.observed.values, strict=True))
+        for run in runs
+    }
+
+
+def _quiet(case: "Case") -> "Case":
+    """Return a case with hardly any noise: where two records are cut otherwise, none cancels."""
+    noise = case.campaign.rig.noise
+    loud = {one.name for one in fields(noise)} - {"colour_s", "wander_s"}
+    noise = replace(noise, **{name: _QUIET * getattr(noise, name) for name in loud})
+    rig = replace(case.campaign.rig, noise=noise)
+    return replace(case, campaign=replace(case.campaign, rig=rig))
+
+
+def _changes(there: Sequence[Shown], without: Sequence[Shown], run: str) -> dict[Component, float]:
+    """Return changes of a run: of what repeats without noise, of all else on the case's noise."""
+    quiet, *loud = (
+        _difference(shown.get(run, {}), usual.get(run, {}))
+        for shown, usual in zip(there, without, strict=True)
+    )
+    found = {one: change for one, change in quiet.items() if one.part in _REPEATING}
+    for one in {component for row in loud for component in row if component.part not in _REPEATING}:
+        found[one] = float(np.mean([row[one] for row in loud if one in row]))
+    return found
+
+
+def _difference(
+    shown: Mapping[Component, float], usual: Mapping[Component, float]
+) -> dict[Component, float]:
+    return {one: value - usual[one] for one, value in shown.items() if one in usual}
+
+
+@contextmanager
+def knowing(forms: Mapping[str, Changes]) -> Iterator[None]:
+    """Have every hypothesis weighed in the true form of its effects, in this process."""
+    from analysis.gap.search import hypotheses
+
+    weighed = hypotheses.weighed
+
+    def told(problem: "Problem", fits: "Sequence[Fit]", *rest: Any) -> Any:
+        return weighed(problem, [in_true_form(problem, fit, forms) for fit in fits], *rest)
+
+    with patch.object(hypotheses, "weighed", told):
+        yield
+
+
+def in_true_form(problem: "Problem", fit: "Fit", forms: Mapping[str, Changes]) -> "Fit":
+    """Return a fit whose effects change what they truly do where they were fitted.
+
+    What luck makes of an effect has no form: it stays as it is. So does what no record has.
+    """
+    known = [one.name in forms and not one.kind.by_chance for one in fit.candidates]
+    signature = fit.signature.copy()
+    for number, candidate in enumerate(fit.candidates):
+        if known[number]:
+            own = problem.signature((candidate,), fit.units[fit.effect_index == number])
+            stack = problem.simulator.stack
+            beyond = problem.whitened(as_stacked(forms[candidate.name], stack)) - own
+            signature += np.nan_to_num(beyond)
+    other_forms = fit.forms[:, :0] if all(known) else fit.forms
+    return replace(fit, signature=signature, forms=other_forms)
+
+
+def as_stacked(changes: Changes, stack: Stack) -> FloatArray:
+    """Return changes in the order of what is compared; no number where there is none."""
+    names = [stack.runs[number].name for number in stack.run]
+    return np.array(
+        [
+            changes.get(name, {}).get(component, np.nan)
+            for name, component in zip(names, stack.components, strict=True)
+        ]
+    )
