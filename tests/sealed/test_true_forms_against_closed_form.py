@@ -89,5 +89,5 @@ def test_a_fit_says_what_it_is_told() -> None:
     assert pair.forms.shape == (3, 2)
 
 
-def test_luck_has_no_form() -> None:
-    assert _told("known", by_chance=True).signature == pytest.approx([1.0, 1.0, 1.0])
+def test_luck_has_a_size_and_no_form() -> None:
+    assert _told("known", by_chance=True).signature == pytest.approx([1.0, 18.0, 1.0])

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from analysis.gap.forward.problem import Problem
     from analysis.gap.search.fit import Fit
     from tests.sealed.generator.case import Case
+    from tests.sealed.generator.sizing import Sized
 
 FILE: Final = "forms.json"
 """What a told case has beside its campaign."""
@@ -90,10 +91,17 @@ def changes_of(case: "Case") -> dict[str, Changes]:
     out: dict[str, Changes] = {}
     for sized in case.content.effects:
         there = [_observed(one, sized.put(usual)) for one in records]
-        out[sized.effect.name] = {
+        out[_name(case, sized)] = {
             run.name: _changes(there, without, run.name) for run in case.campaign.runs
         }
     return out
+
+
+def _name(case: "Case", sized: "Sized") -> str:
+    """Return the name that an answer has for an effect: its own, or that of what says the same."""
+    (first, *_), own = case.content.right or ((),), sized.effect.name
+    known = {name for answer in case.content.right for name in answer}
+    return own if own in known or len(first) != 1 else first[0]
 
 
 def _observed(case: "Case", parameters: FloatArray) -> Shown:
@@ -155,16 +163,18 @@ def knowing(forms: Mapping[str, Changes]) -> Iterator[None]:
 def in_true_form(problem: "Problem", fit: "Fit", forms: Mapping[str, Changes]) -> "Fit":
     """Return a fit whose effects change what they truly do where they were fitted.
 
-    What luck makes of an effect has no form: it stays as it is. So does what no record has.
+    What luck makes of an effect has no form: of such a one only its lines and its scatter are told.
+    What no record has stays as it is.
     """
-    known = [one.name in forms and not one.kind.by_chance for one in fit.candidates]
-    signature = fit.signature.copy()
+    stack, signature = problem.simulator.stack, fit.signature.copy()
+    repeating = np.array([one.part in _REPEATING for one in stack.components])
+    known = [one.name in forms for one in fit.candidates]
     for number, candidate in enumerate(fit.candidates):
         if known[number]:
             own = problem.signature((candidate,), fit.units[fit.effect_index == number])
-            stack = problem.simulator.stack
             beyond = problem.whitened(as_stacked(forms[candidate.name], stack)) - own
-            signature += np.nan_to_num(beyond)
+            by_luck = repeating & candidate.kind.by_chance
+            signature += np.where(by_luck, 0.0, np.nan_to_num(beyond))
     other_forms = fit.forms[:, :0] if all(known) else fit.forms
     return replace(fit, signature=signature, forms=other_forms)
 

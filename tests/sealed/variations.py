@@ -19,6 +19,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from tests.sealed.scoring.by_world import CLEAR_SNR
+
 FloatArray = NDArray[np.float64]
 
 LEAST_SAMPLES: Final = 15.0
@@ -202,6 +204,11 @@ def _answer(path: Path) -> dict[str, Any]:
     return found
 
 
+def counted(truth: dict[str, Any], variation: Variation) -> bool:
+    """Tell whether a variation of a case is compared: nothing is wrong, or SNR from 10 in both."""
+    return truth["verdict"] == "none" or truth["snr"] * variation.part**0.5 >= CLEAR_SNR
+
+
 def agreements(board: Path, output: Path) -> list[Agreement]:
     """Compare answers to variations with those to their cases, SNR from 10 in both."""
     out = []
@@ -210,8 +217,7 @@ def agreements(board: Path, output: Path) -> list[Agreement]:
         for path in sorted((output / "answers").glob(f"*.{variation.name}.json")):
             name = path.stem.split(".")[0]
             truth = _answer(board / "keys" / name / "truth.json")
-            null = truth["verdict"] == "none"
-            if null or truth["snr"] * variation.part**0.5 >= 10.0:
+            if counted(truth, variation):
                 own = _answer(board / "answers" / f"{name}.json")
                 pairs.append(alike(own, _answer(path), truth))
         if pairs:
