@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from benchmarks.boards.beside import CASES as FEW
-from benchmarks.boards.learned import figures_by_row
+from benchmarks.boards.learned import CALIBRATED, figures_by_row
 from benchmarks.boards.row_figures import SHOWN, figures_beside, rows_beside
 from benchmarks.boards.rows import Line, kept
 from benchmarks.boards.worlds import CASES, WORLDS, marks_in
@@ -19,7 +19,7 @@ from tests.sealed.scoring.by_world import Figure, Held, figures_of, held_to
 _BESIDE: Final = {
     "top_1_by_class": "top-1 by class",
     "stage": "stage",
-    "unknown": "unknown said",
+    "unknown_or_like": "unknown, or what says the same",
 }
 _LEARNED: Final = {
     "class": "top-1 by class",
@@ -29,10 +29,11 @@ _LEARNED: Final = {
 }
 
 
-def _rows(lines: Sequence[Line], beside: Sequence[Line]) -> Iterator[Row]:
+def _rows(lines: Sequence[Line], beside: Sequence[Line], learned: Sequence[Line]) -> Iterator[Row]:
     for world in WORLDS:
         figures = figures_of(marks_in(lines, world))
-        figures |= figures_beside([one for one in beside if one["campaign"] == world])
+        own, learning = ([x for x in some if x["campaign"] == world] for some in (beside, learned))
+        figures |= figures_beside(own, learning)
         yield from (_row(world, one) for one in held_to(figures, world) if one.count)
 
 
@@ -44,7 +45,7 @@ def _row(world: str, one: Held) -> Row:
         "figure": one.what,
         "limit": ", ".join(text for text in (least, most) if text),
         "measured": f"{one.value:.3f}",
-        "95 % interval (bootstrap)": f"{one.low:.3f} to {one.high:.3f}",
+        "95 % interval": f"{one.low:.3f} to {one.high:.3f}",
         "n": one.count,
         "": one.word.replace("missed", "MISSED"),
     }
@@ -55,7 +56,10 @@ def _learned_rows(lines: Sequence[Line]) -> Iterator[Row]:
         there = [line for line in lines if line["campaign"] == world]
         for name, figures, mean in figures_by_row(there):
             shown = {what: _with_count(figures[key]) for key, what in _LEARNED.items()}
-            yield {"world": world, "row": name, **shown, "mean of columns": f"{mean:.3f}"}
+            whole = f"{mean:.3f}"
+            if name in CALIBRATED:
+                shown[_LEARNED["stage"]] = whole = "-"
+            yield {"world": world, "row": name, **shown, "mean of columns": whole}
 
 
 def _with_count(figure: Figure) -> str:
@@ -111,8 +115,9 @@ def counted(
     there = {world: sum(one["campaign"] == world for one in lines) for world in WORLDS}
     notes = [
         f"Cases in each world: {CASES} with something wrong and as many nulls, mixed by the seed, "
-        "case 1 of every world before case 2 of any; figures are of nulls and of SNR from 10 on. "
-        "Close: the interval's better end meets the limit. `python -m benchmarks.boards worlds` "
+        "case 1 of every world before case 2 of any; figures are of all without a gap and of SNR "
+        "from 10 on. Intervals are Wilson's of a share, else the bootstrap's; close: the "
+        "interval's better end meets the limit. `python -m benchmarks.boards worlds` "
         "goes on with what is missing.",
         f"Figures beside the oracle's, beside other rows, and of invariance are of the first {FEW} "
         "cases of each world: `python -m benchmarks.boards beside` goes on with them.",
@@ -120,17 +125,21 @@ def counted(
     ]
     if beside:
         notes.append(
-            f"Rows beside, SNR from 10: the oracle is told each case's tolerances and forms; the "
+            "Rows beside, SNR from 10: the oracle is told the form and the size of what is there, "
+            "should a hypothesis name it; cases state the tolerances of their world to all. The "
             f"linear matcher, whose share is expected, knows the key. {_same(lines, beside)}"
         )
     if learned:
         notes.append(f"{_trained(learned)} {_same(lines, learned)}")
     tables = {
-        "Figures by world": list(_rows(lines, beside)),
+        "Figures by world": list(_rows(lines, beside, learned)),
         "Rows beside": list(_beside_rows(beside)),
         "Rows that learn": list(_learned_rows(learned)),
     }
     measured = {f"cases_{world.lower()}": float(count) for world, count in there.items() if count}
+    if lines:
+        missed = [row for row in tables["Figures by world"] if row[""] == "MISSED"]
+        measured["limits_missed"] = float(len(missed))
     return Outcome({name: rows for name, rows in tables.items() if rows}, measured, tuple(notes))
 
 

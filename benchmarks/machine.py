@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 ROOT = Path(__file__).parents[1]
+MEASURED = ("pmm", "hardware", "analysis", "sim", "tests/sealed")
 
 
 def describe() -> dict[str, str]:
@@ -51,7 +52,7 @@ def commit() -> str:
     """Return the commit that is checked out, marked where the measured code differs from it."""
     try:
         name = _git("rev-parse", "--short", "HEAD")
-        changed = _git("status", "--porcelain", "--", "pmm", "hardware", "analysis", "sim")
+        changed = _git("status", "--porcelain", "--", *MEASURED)
     except (OSError, subprocess.CalledProcessError):
         return "unknown"
     return f"{name} with changes" if changed else name

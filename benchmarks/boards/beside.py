@@ -24,13 +24,23 @@ from tests.sealed.scoring.columns import COLUMNS, Entry
 from tests.sealed.scoring.keys import Truth, read_truth
 from tests.sealed.scoring.rows import BINS
 from tests.sealed.scoring.score import entries_of, floors_of
-from tests.sealed.true_forms import read_forms
-from tests.sealed.variations import VARIATIONS, agreements, alike, counted, fits, varied, vary
+from tests.sealed.true_forms import read_forms, write_forms
+from tests.sealed.variations import (
+    VARIATIONS,
+    Variation,
+    agreements,
+    alike,
+    counted,
+    fits,
+    varied,
+    vary,
+)
 
 Line = dict[str, Any]
 
 CASES: Final = 100  # of each world: its first ones
 _VARIED: Final = "varied"
+_WHOLE: Final = Variation("whole")
 _CUT: Final = next(one for one in VARIATIONS if one.part < 1.0)
 
 
@@ -55,9 +65,8 @@ def compared(world: str, index: int, commit: str, size: int) -> Line:
         _ask_oracle(folder, told(folder), name)
         answered_as(folder, folder / ORACLE)
         key = folder / "keys" / name / "truth.json"
-        needed = [one.name for one in VARIATIONS if counted(json.loads(key.read_text()), one)]
-        for other in varied(folder, folder / _VARIED, 1):
-            if other.partition(".")[2] in (*needed, _CUT.name):
+        if counted(json.loads(key.read_text()), _WHOLE):
+            for other in varied(folder, folder / _VARIED, 1):
                 ask(folder / _VARIED, other, (DIAGNOSIS,), proposes=False)
         truth = read_truth(key)
         matched = _matched(_read(folder, DIAGNOSIS, truth), truth)
@@ -75,22 +84,25 @@ def _cut(folder: Path, truth: Truth) -> list[float]:
     """Return whether a case that is cut has the class of the whole, and the oracle's probabilities.
 
     These are of the class that it says of the whole and of the cut case. Nothing where the case is
-    too short to be cut.
+    too short to be cut or its SNR too low, and where an oracle has nothing to know.
     """
     whole, cut = truth.case, f"{truth.case}.{_CUT.name}"
-    if not fits(folder / "cases" / whole, _CUT):
+    told_case, room = folder / ORACLE / "cases" / whole, folder / ORACLE / _VARIED
+    key = json.loads((folder / "keys" / whole / "truth.json").read_text())
+    if not (counted(key, _CUT) and fits(told_case, _CUT) and read_forms(told_case)):
         return []
-    room = folder / ORACLE / _VARIED
-    vary(folder / ORACLE / "cases" / whole, room / "cases" / cut, _CUT)
-    _ask_oracle(folder / _VARIED, room, cut)
+    vary(told_case, room / "cases" / cut, _CUT)
+    write_forms(key, room / "cases" / cut, _CUT)
+    ask(room, cut, (DIAGNOSIS,), proposes=False)
     sure = (
         _sure(folder / f"answers-{ORACLE}" / f"{whole}.json", truth),
         _sure(room / "answers" / f"{cut}.json", replace(truth, case=cut)),
     )
-    ours, key = folder / "answers" / f"{whole}.json", folder / "keys" / whole / "truth.json"
-    files = ours, folder / _VARIED / "answers" / f"{cut}.json", key
-    same, _ = alike(*(json.loads(file.read_text()) for file in files))
-    return [float(same), *sure]
+    own, cut_own = (
+        json.loads((room / "answers" / f"{case}.json").read_text())
+        for room, case in ((folder, whole), (folder / _VARIED, cut))
+    )
+    return [float(alike(own, cut_own, key)[0]), *sure]
 
 
 def _ask_oracle(board: Path, told_board: Path, case: str) -> None:

@@ -25,12 +25,14 @@ from tests.sealed.learning.rows import boosted, with_shares
 from tests.sealed.scoring.answers import NONE, VERDICTS, Answer
 from tests.sealed.scoring.by_world import Figure, Marks, figures_of
 from tests.sealed.scoring.keys import Truth, read_truth
+from tests.sealed.scoring.rows import BINS
 
 Line = dict[str, Any]
 
 _BOOSTED: Final = tuple(f"boosted-{look}" for look in LOOKS)
-_CALIBRATED: Final = (f"{DIAGNOSIS}-isotonic", f"{DIAGNOSIS}-conformal")
-ROWS: Final = (DIAGNOSIS, *_BOOSTED, *_CALIBRATED)
+CALIBRATED: Final = (f"{DIAGNOSIS}-isotonic", f"{DIAGNOSIS}-conformal")
+"""Rows that change probabilities alone: stages and forecasts are the diagnosis's."""
+ROWS: Final = (DIAGNOSIS, *_BOOSTED, *CALIBRATED)
 
 
 def answered(world: str, index: int, commit: str, size: int, training: Path) -> Line:
@@ -66,8 +68,9 @@ def answered(world: str, index: int, commit: str, size: int, training: Path) -> 
         truth = read_truth(folder / "keys" / name / "truth.json")
         rows = dict(marks_by_row(folder, truth, ROWS))
     line = {"campaign": world, "seed": index, "frozen": commit, "rows": rows}
-    counts = {"trained_on": len(list(training.glob("*.json"))), "verdict": truth.verdict}
-    return {**line, **counts, "cpu_s": round(time.process_time() - began, 2)}
+    line |= {"counts": BINS[-1].holds(truth), "verdict": truth.verdict}
+    trained = {"trained_on": len(list(training.glob("*.json")))}
+    return {**line, **trained, "cpu_s": round(time.process_time() - began, 2)}
 
 
 @cache
@@ -78,7 +81,7 @@ def _calibrators() -> dict[str, Isotonic | Conformal]:
 
     lines = [line for line in kept("weighings") if line["is_clear"]]
     shares = [reweighed(line, asdict(ODDS)) for line in lines]
-    return dict(zip(_CALIBRATED, calibrations(lines, shares), strict=True))
+    return dict(zip(CALIBRATED, calibrations(lines, shares), strict=True))
 
 
 def calibrations(
@@ -110,7 +113,7 @@ def _truth(line: Line) -> Truth:
 
 def figures_by_row(lines: Sequence[Line]) -> Iterator[tuple[str, dict[str, Figure], float]]:
     """Yield each row's name, its figures as of a world's diagnosis, and its mean of columns."""
-    means = row_means(lines)
+    means = row_means([line for line in lines if line["counts"]])
     for name in ROWS if lines else ():
         marks = [
             Marks(one["is_clear"], one["values"], one["stated"])

@@ -14,10 +14,11 @@ from tests.sealed.scoring.by_world import (
     Figure,
     Marks,
     figures_of,
+    is_rival,
     mean_figure,
 )
 from tests.sealed.scoring.columns import COLUMNS
-from tests.sealed.scoring.intervals import auroc
+from tests.sealed.scoring.intervals import median
 from tests.sealed.scoring.rows import mean_of
 from tests.sealed.variations import VARIATIONS
 
@@ -26,29 +27,59 @@ Line = dict[str, Any]
 MATCHER: Final = "linear matcher"
 SHOWN: Final = tuple(PAIRED.values())
 """Columns that the table of rows shows."""
+_DRAWS, _SEED = 200, 20263
 _SAMPLED: Final = tuple(one.name for one in VARIATIONS if one.part == 1.0)
 
 
-def figures_beside(lines: Sequence[Line]) -> dict[str, Figure]:
-    """Return the figures of a world's lines that take other rows, or the case again."""
+def figures_beside(lines: Sequence[Line], learned: Sequence[Line] = ()) -> dict[str, Figure]:
+    """Return the figures of a world's lines that take other rows, or the case again.
+
+    Parameters
+    ----------
+    learned
+        Lines of rows that learn, one of which is a rival too: where every case has one.
+    """
     marks = {
         name: [Marks(one["is_clear"], one["values"], one["stated"]) for one in row]
         for name, row in _rows(lines).items()
         if name in (DIAGNOSIS, ORACLE)
     }
     out = {key: one for key, one in figures_of(marks).items() if key in PAIRED} if marks else {}
-    alike = [line["alike"][name] for line in lines for name in _SAMPLED if name in line["alike"]]
-    for at, key in enumerate(("invariance_class", "invariance_probability")):
-        out[key] = mean_figure(np.array([float(one[at]) for one in alike]))
+    sampled = [
+        [line["alike"][name] for name in _SAMPLED if name in line["alike"]] for line in lines
+    ]
+    by_case = np.array([np.mean(one, axis=0) for one in sampled if one]).reshape(-1, 2)
+    out["invariance_class"], out["invariance_probability"] = map(mean_figure, by_case.T)
     cut = [line["cut"] for line in lines if line["cut"]]
     held = [same for same, *sure in cut if min(sure) >= SURE]
     out["invariance_cut"] = mean_figure(np.array(held))
-    means = row_means([line for line in lines if line["counts"]])
-    others = [mean for name, mean in means.items() if name not in (DIAGNOSIS, ORACLE)]
-    if others:
-        ahead = means[DIAGNOSIS] - max(others)
-        out["ahead_of_others"] = (ahead, ahead, ahead, len(lines))
+    rivals = [line for line in _with_learned(lines, learned) if line["counts"]]
+    if rivals:
+        rng = np.random.default_rng(_SEED)
+        drawn = [
+            _ahead([rivals[at] for at in rng.integers(0, len(rivals), len(rivals))])
+            for _ in range(_DRAWS)
+        ]
+        low, high = np.quantile(drawn, (0.025, 0.975))
+        out["ahead_of_others"] = (_ahead(rivals), float(low), float(high), len(rivals))
     return out
+
+
+def _ahead(lines: Sequence[Line]) -> float:
+    """Return by how much the diagnosis's mean of columns is above the best rival's."""
+    means = row_means(lines)
+    return means[DIAGNOSIS] - max(mean for name, mean in means.items() if is_rival(name))
+
+
+def _with_learned(lines: Sequence[Line], learned: Sequence[Line]) -> Sequence[Line]:
+    by_case = {(one["campaign"], one["seed"]): one["rows"] for one in learned}
+    keys = [(line["campaign"], line["seed"]) for line in lines]
+    if not all(key in by_case for key in keys):
+        return lines
+    return [
+        {**line, "rows": {**by_case[key], **line["rows"]}}
+        for key, line in zip(keys, lines, strict=True)
+    ]
 
 
 def rows_beside(lines: Sequence[Line]) -> Iterator[tuple[str, dict[str, Figure], float | None]]:
@@ -81,13 +112,18 @@ def _rows(lines: Sequence[Line]) -> dict[str, list[Line]]:
 
 
 def _figures(lines: Sequence[Line], row: Sequence[Line]) -> dict[str, float]:
-    found = {
-        one.key: one.figure([x for mark in row for x in mark["values"][one.key]]) for one in COLUMNS
-    }
+    found: dict[str, float] = {}
+    for column in COLUMNS:
+        values = [x for mark in row for x in mark["values"][column.key]]
+        if values:
+            middle = np.median if column.figure is median else np.mean
+            found[column.key] = float(middle(values))
     verdicts = [line["verdict"] for line in lines]
     inside, outside = (
         [mark["unknown"] for mark, verdict in zip(row, verdicts, strict=True) if verdict == which]
         for which in (UNKNOWN, "gap")
     )
-    found["auroc"] = auroc(inside, outside)
-    return {key: figure.value for key, figure in found.items() if figure is not None}
+    if inside and outside:
+        one, two = np.array(inside)[:, None], np.array(outside)
+        found["auroc"] = float(np.mean((one > two) + 0.5 * (one == two)))
+    return found

@@ -11,7 +11,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Final
 
-from benchmarks.machine import ROOT
+from benchmarks.machine import MEASURED, ROOT
 from tests.sealed.answering import DIAGNOSIS, Asked, answer_case
 from tests.sealed.board import make_one, nulls_of
 from tests.sealed.scoring.answers import read_answer
@@ -23,7 +23,6 @@ Line = dict[str, Any]
 
 WORLDS: Final = ("A", "B", "C", "D")
 CASES: Final = 300  # with something wrong, and as many nulls, in each world
-_MEASURED: Final = ("pmm", "hardware", "analysis", "sim", "tests/sealed")
 
 
 def frozen(rows: Sequence[Line]) -> str:
@@ -35,12 +34,28 @@ def frozen(rows: Sequence[Line]) -> str:
         If what is checked out differs from it.
     """
     name = str(rows[0]["frozen"]) if rows else _git("rev-parse", "HEAD").stdout.strip()
-    if _git("diff", "--quiet", name, "--", *_MEASURED).returncode:
+    if _git("diff", "--quiet", name, "--", *MEASURED).returncode:
         raise SystemExit(
             f"the lines are of commit {name[:7]}, and the diagnosis has changed since: go on in a "
             "work tree of that commit, with --output for the folder of these lines"
         )
     return name
+
+
+def check_unchanged(rows: Sequence[Line]) -> None:
+    """Refuse to add to lines that other code measured, the boards' own counted.
+
+    Raises
+    ------
+    SystemExit
+        If what is checked out differs from the commit of the first line.
+    """
+    name = str(rows[0]["commit"]).partition(" ")[0] if rows else "HEAD"
+    if _git("diff", "--quiet", name, "--", *MEASURED, "benchmarks/boards").returncode:
+        raise SystemExit(
+            f"the lines are of commit {name}, and what measures has changed since: go on in a work "
+            "tree of that commit, with --output for the folder of these lines"
+        )
 
 
 def _git(*arguments: str) -> subprocess.CompletedProcess[str]:

@@ -34,7 +34,7 @@ def _line(
 
     rows = {"diagnosis": mark(ours), "oracle": mark(theirs), "no-gap": mark(0.0)}
     kept = {"thin-2": alike, "cut": [False, False]}
-    line = {"campaign": "A", "rows": rows, "alike": kept, "counts": True, "verdict": "gap"}
+    line = {"campaign": "A", "seed": 0, "rows": rows, "alike": kept, "counts": True, "verdict": "gap"}
     return {**line, "matched": {"top_1_by_class": 0.5, "stage": 0.75}, "cut": list(cut)}
 
 
@@ -54,12 +54,13 @@ def test_figures_are_those_by_hand() -> None:
     # Class and stage are all that these lines show: (0.5 + 1) / 2 against (0 + 1) / 2.
     assert row_means(lines) == pytest.approx({"diagnosis": 0.75, "oracle": 0.875, "no-gap": 0.5})
     assert found["ahead_of_others"][0] == pytest.approx(0.25)
+    assert found["ahead_of_others"][1] < 0.25 < found["ahead_of_others"][2]
     assert {"class", "false_alarms"}.isdisjoint(found)
     rows = {name: (figures, mean) for name, figures, mean in rows_beside(lines)}
     assert list(rows) == ["diagnosis", "oracle", "no-gap", MATCHER]
     assert rows["oracle"][0]["top_1_by_class"][0] == 0.75
     assert rows[MATCHER][0]["stage"][0] == 0.75
-    assert rows[MATCHER][0]["unknown"][3] == 0
+    assert rows[MATCHER][0]["unknown_or_like"][3] == 0
 
 
 def test_a_cut_case_counts_where_the_oracle_is_sure_of_both() -> None:

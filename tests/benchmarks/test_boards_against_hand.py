@@ -145,7 +145,7 @@ def test_figures_of_kept_marks_are_those_of_the_answers_themselves() -> None:
                 ("A", True, wrong, [0.92, 0.0]),
                 ("A", False, wrong, [0.99, 0.0]),  # below SNR 10: in no figure
                 ("A", True, null, [0.5, 1.0]),
-                ("A", True, alarm, None),
+                ("A", True, alarm, None),  # failed: sure and wrong
                 ("B", True, right, [0.6, 1.0]),
             ]
         )
@@ -154,9 +154,9 @@ def test_figures_of_kept_marks_are_those_of_the_answers_themselves() -> None:
     rows = {(r["world"], r["figure"]): r for r in found.tables["Figures by world"]}
     wrong_and_sure = "wrong, of the answers with class probability of 0.9 or more"
     expected = {"nulls": ("0.500", 2), "top-1 by class": ("0.500", 2), "stage": ("1.000", 2),
-                wrong_and_sure: ("0.500", 2)}  # fmt: skip
+                wrong_and_sure: ("0.667", 3)}  # fmt: skip
     for figure, (value, count) in expected.items():
         assert (rows["A", figure]["measured"], rows["A", figure]["n"]) == (value, count), figure
     assert rows["A", "top-1 by class"][""] == "close"
     assert ("B", "nulls") not in rows
-    assert found.measured == {"cases_a": 5.0, "cases_b": 1.0}
+    assert found.measured == {"cases_a": 5.0, "cases_b": 1.0, "limits_missed": 3.0}

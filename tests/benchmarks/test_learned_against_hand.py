@@ -46,7 +46,8 @@ def _line(right: float, *, boosted: float) -> dict[str, Any]:
         return {"is_clear": True, "values": values, "stated": [0.95, value], "unknown": 0.0}
 
     rows = {name: mark(boosted if name.startswith("boosted") else right) for name in ROWS}
-    return {"campaign": "A", "seed": 0, "rows": rows, "verdict": "gap", "trained_on": 7}
+    line = {"campaign": "A", "seed": 0, "rows": rows, "verdict": "gap"}
+    return {**line, "counts": True, "trained_on": 7}
 
 
 def test_figures_of_each_row_are_those_by_hand() -> None:

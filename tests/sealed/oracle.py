@@ -1,4 +1,4 @@
-"""The oracle of a board: the diagnosis itself, told the true tolerances and forms of each case."""
+"""The oracle of a board: the diagnosis itself, told what is there, in its true form and size."""
 
 import json
 import shutil

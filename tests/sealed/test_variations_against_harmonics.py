@@ -69,6 +69,9 @@ def test_folders_say_what_they_hold(board: Path, tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_agreement_is_counted_by_class(board: Path, tmp_path: Path) -> None:
     output = tmp_path / "varied"
+    for name in ("case-0001", "case-0002"):
+        key = board / "keys" / name / "truth.json"
+        key.write_text(json.dumps({**json.loads(key.read_text()), "verdict": "gap", "snr": 13.0}))
     for folder, name, shares in (
         (board, "case-0001", {"none": 0.9, "cable": 0.1}),
         (output, "case-0001.cut", {"none": 0.7, "cable": 0.3}),

@@ -1,9 +1,9 @@
-"""The forms that effects truly have, for the oracle: what each changes of its case's own runs.
+"""What is there in its true form and size, for the oracle: what it changes of its case's own runs.
 
 A case is made again from its key and recorded with each of its effects and without any: what
 repeats with hardly any noise, lines and scatter on two draws of the case's own. The diagnosis's own
 observation of both tells what the effect changes; a hypothesis that names it says so too, whatever
-form the catalogue knows.
+form the catalogue knows. Hypotheses that name something else keep the catalogue's forms.
 """
 
 import json
@@ -25,6 +25,7 @@ from analysis.gap.observe.components import (
     Stack,
 )
 from hardware.description.arrays import FloatArray
+from tests.sealed.variations import Variation, vary
 
 if TYPE_CHECKING:
     from analysis.gap.forward.problem import Problem
@@ -46,8 +47,14 @@ Changes = Mapping[str, Mapping[Component, float]]
 """What an effect changes, by run and component."""
 
 
-def write_forms(truth: Mapping[str, Any], folder: Path) -> None:
-    """Write what each effect of a key changes into the folder of its case; nothing without any."""
+def write_forms(truth: Mapping[str, Any], folder: Path, variation: Variation | None = None) -> None:
+    """Write what each effect of a key changes into the folder of its case; nothing without any.
+
+    Parameters
+    ----------
+    variation
+        How the folder's records are varied, if they are.
+    """
     from tests.sealed.generator.case import make
 
     if not truth.get("effects"):
@@ -59,7 +66,7 @@ def write_forms(truth: Mapping[str, Any], folder: Path) -> None:
             run: [[one.channel, one.part.value, one.order, change] for one, change in row.items()]
             for run, row in changes.items()
         }
-        for name, changes in changes_of(case).items()
+        for name, changes in changes_of(case, variation).items()
     }
     (folder / FILE).write_text(json.dumps(kept))
 
@@ -78,7 +85,7 @@ def read_forms(folder: Path) -> dict[str, Changes]:
     }  # fmt: skip
 
 
-def changes_of(case: "Case") -> dict[str, Changes]:
+def changes_of(case: "Case", variation: Variation | None = None) -> dict[str, Changes]:
     """Return what each effect of a case changes by itself."""
     from tests.sealed.generator.background import with_all
 
@@ -87,10 +94,10 @@ def changes_of(case: "Case") -> dict[str, Changes]:
         _quiet(case),
         *(replace(case, seed=case.seed + draw) for draw in range(1, 1 + _DRAWS)),
     ]
-    without = [_observed(one, usual) for one in records]
+    without = [_observed(one, usual, variation) for one in records]
     out: dict[str, Changes] = {}
     for sized in case.content.effects:
-        there = [_observed(one, sized.put(usual)) for one in records]
+        there = [_observed(one, sized.put(usual), variation) for one in records]
         out[_name(case, sized)] = {
             run.name: _changes(there, without, run.name) for run in case.campaign.runs
         }
@@ -104,14 +111,18 @@ def _name(case: "Case", sized: "Sized") -> str:
     return own if own in known or len(first) != 1 else first[0]
 
 
-def _observed(case: "Case", parameters: FloatArray) -> Shown:
+def _observed(case: "Case", parameters: FloatArray, variation: Variation | None) -> Shown:
     """Return what the diagnosis observes of a case's runs in another reality."""
     from pmm.gap.load import load_campaign
     from tests.sealed.generator.files import write_open
 
     with TemporaryDirectory() as room:
         write_open(replace(case, parameters=parameters), Path(room))
-        loaded = load_campaign(Path(room) / case.name)
+        folder = Path(room) / case.name
+        if variation is not None:
+            vary(folder, Path(room) / "varied", variation)
+            folder = Path(room) / "varied"
+        loaded = load_campaign(folder)
     runs = (*loaded.runs, *loaded.at_rest)
     return {
         run.name: dict(zip(run.observed.components, run.observed.values, strict=True))

@@ -13,6 +13,7 @@ import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import product
 from pathlib import Path
 from typing import Any, Final
 
@@ -97,7 +98,7 @@ def vary(case: Path, target: Path, variation: Variation) -> None:
             _netcdf(file, target / file.name, variation)
         elif file.name.endswith(".csv.gz"):
             _csv(file, target / file.name, variation)
-        elif beside or file.suffix in (".toml", ".json"):
+        elif beside or file.suffix == ".toml":
             shutil.copy(file, target / file.name)
 
 
@@ -205,8 +206,8 @@ def _answer(path: Path) -> dict[str, Any]:
 
 
 def counted(truth: dict[str, Any], variation: Variation) -> bool:
-    """Tell whether a variation of a case is compared: nothing is wrong, or SNR from 10 in both."""
-    return truth["verdict"] == "none" or truth["snr"] * variation.part**0.5 >= CLEAR_SNR
+    """Tell whether a variation of a case is compared: SNR from 10 in both."""
+    return bool(truth["verdict"] != "none" and truth["snr"] * variation.part**0.5 >= CLEAR_SNR)
 
 
 def agreements(board: Path, output: Path) -> list[Agreement]:
@@ -232,6 +233,7 @@ def alike(own: dict[str, Any], other: dict[str, Any], truth: dict[str, Any]) -> 
     if not shares or not theirs:
         return False, False
     best, rival = (max(sorted(one), key=lambda n: one[n]) for one in (shares, theirs))
-    names = {best, *truth["classes"].get(best, [])}
+    groups = [{name, *truth["classes"].get(name, [])} for name in best.split("+")]
+    names = {"+".join(sorted(one)) for one in product(*groups)}
     said, now = (sum(one.get(name, 0.0) for name in names) for one in (shares, theirs))
     return rival in names, rival in names and abs(said - now) <= 0.1

@@ -1,11 +1,11 @@
-"""A board's figures by the limits of its world: SNR from 10, bootstrap intervals.
+"""A board's figures by the limits of its world: SNR from 10, with 95 % intervals.
 
-The oracle is a row of the board, ``answers-oracle/``: the same engine, told the key's tolerances
-and forms. Without it the paired figures are left out; docs/sealed.md says what each figure is.
+The oracle is a row of the board, ``answers-oracle/``: the same engine, told the form and the size
+of what is there. Without it the paired figures are left out; docs/sealed.md says what each is.
 """
 
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from tests.sealed.scoring.answers import Answer
 from tests.sealed.scoring.board import DIAGNOSIS, Board
 from tests.sealed.scoring.columns import COLUMNS, Entry
+from tests.sealed.scoring.intervals import wilson
 from tests.sealed.scoring.right import by_class, is_stated, named, stated
 from tests.sealed.scoring.score import entries_of, floors_of, score
 
@@ -26,6 +27,7 @@ ORACLE: Final = "oracle"
 CLEAR_SNR: Final = 10.0
 SURE: Final = 0.9
 _BINS, _DRAWS, _PERFECT, _SEED = 10, 1000, 400, 20262
+_OURS: Final = (DIAGNOSIS, ORACLE, "boosted-hypotheses")
 _COLUMNS: Final = {column.key: column for column in COLUMNS}
 _OWN: Final = {
     "false_alarms": "false_alarms",
@@ -36,7 +38,7 @@ _OWN: Final = {
 PAIRED: Final = {
     "class_below_oracle": "top_1_by_class",
     "stage_below_oracle": "stage",
-    "unknown_below_oracle": "unknown",
+    "unknown_below_oracle": "unknown_or_like",
 }
 
 
@@ -95,11 +97,16 @@ def by_world(board: Board, world: str) -> tuple[Held, ...]:
     }
     found = figures_of(rows)
     whole = {row.name: row.mean for row in score(board).rows}
-    others = [mean for name, mean in whole.items() if name not in (DIAGNOSIS, ORACLE)]
+    others = [mean for name, mean in whole.items() if is_rival(name)]
     if others:
         ahead = whole[DIAGNOSIS] - max(others)
         found["ahead_of_others"] = (ahead, ahead, ahead, len(board.truths))
     return held_to(found, world)
+
+
+def is_rival(row: str) -> bool:
+    """Tell whether a row uses neither our features nor the key of what it is judged on."""
+    return row not in _OURS and not row.startswith(f"{DIAGNOSIS}-")
 
 
 def held_to(found: "Mapping[str, Figure]", world: str) -> tuple[Held, ...]:
@@ -158,10 +165,17 @@ def figures_of(rows: Mapping[str, Sequence[Marks]]) -> dict[str, Figure]:
         for key, column in PAIRED.items():
             theirs, own = (_values(row, column) for row in (rows[ORACLE], ours))
             out[key] = mean_figure(theirs - own)
-    said = np.array([one.stated for one in ours if one.is_clear and one.stated]).reshape(-1, 2)
+    said = _stated(one for one in ours if one.is_clear)
     out["sure_and_wrong"] = mean_figure(1.0 - said[said[:, 0] >= SURE, 1])
-    out["calibration_excess"] = _boot(said, _excess, len(said))
+    out["calibration_excess"] = _boot(said, _excess)
+    gaps = _stated(one for one in ours if one.is_clear and not one.values["false_alarms"])
+    out["sure_and_wrong_gaps"] = mean_figure(1.0 - gaps[gaps[:, 0] >= SURE, 1])
     return out
+
+
+def _stated(marks: Iterable[Marks]) -> FloatArray:
+    """Return what is stated and whether it is right; a failure counts as sure and wrong."""
+    return np.array([one.stated or (1.0, 0.0) for one in marks]).reshape(-1, 2)
 
 
 def _values(marks: Sequence[Marks], column: str) -> FloatArray:
@@ -191,14 +205,20 @@ def _excess(rows: FloatArray) -> float:
 
 
 def mean_figure(values: FloatArray) -> Figure:
-    """Return a mean with its 95 % interval by the bootstrap, and n."""
-    return _boot(values, lambda drawn: float(drawn.mean()), len(values))
+    """Return a mean with its 95 % interval, and n: Wilson's of a share, else the bootstrap's.
+
+    Of none, or all, of n the bootstrap would say nothing.
+    """
+    if len(values) and np.isin(values, (0.0, 1.0)).all():
+        return float(values.mean()), *wilson(float(values.sum()), len(values)), len(values)
+    return _boot(values, lambda drawn: float(drawn.mean()))
 
 
-def _boot(values: FloatArray, figure: Callable[[FloatArray], float], count: int) -> Figure:
+def _boot(values: FloatArray, figure: Callable[[FloatArray], float]) -> Figure:
+    count = len(values)
     if count == 0:
         return None, None, None, 0
-    rng, draws = np.random.default_rng(_SEED), _DRAWS if values.ndim == 1 else _DRAWS // 10
+    rng, draws = np.random.default_rng(_SEED), _DRAWS if values.ndim == 1 else _DRAWS // 4
     found = [figure(values[rng.integers(0, count, count)]) for _ in range(draws)]
     low, high = np.quantile(found, (0.025, 0.975))
     return figure(values), float(low), float(high), count
