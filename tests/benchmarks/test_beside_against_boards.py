@@ -34,7 +34,8 @@ def _line(
 
     rows = {"diagnosis": mark(ours), "oracle": mark(theirs), "no-gap": mark(0.0)}
     kept = {"thin-2": alike, "cut": [False, False]}
-    line = {"campaign": "A", "seed": 0, "rows": rows, "alike": kept, "counts": True, "verdict": "gap"}
+    line = {"campaign": "A", "seed": 0, "rows": rows, "alike": kept, "verdict": "gap"}
+    line |= {"counts": True}
     return {**line, "matched": {"top_1_by_class": 0.5, "stage": 0.75}, "cut": list(cut)}
 
 
