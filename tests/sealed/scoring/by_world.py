@@ -50,7 +50,7 @@ class Held:
     ----------
     word
         ``met``, ``missed`` (the interval's better end misses it too) or ``close``; empty where the
-        board does not show it.
+        board does not show it, or no limit was set.
     strict
         Whether the interval's worse end is held to the limit, so that nothing is close.
     """
@@ -68,7 +68,8 @@ class Held:
     @property
     def word(self) -> str:
         """How the figure stands to its limits."""
-        if self.value is None or self.low is None or self.high is None:
+        no_limit = self.at_most is None and self.at_least is None
+        if no_limit or self.value is None or self.low is None or self.high is None:
             return ""
         worst = [
             _held(self.low, self.high, self.at_most),

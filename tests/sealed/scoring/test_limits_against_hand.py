@@ -39,6 +39,7 @@ def test_words_follow_the_interval() -> None:
     assert both.word == "met"
     assert Held("k", "w", 0.80, 0.7, 0.89, 9, 0.98, 0.90).word == "missed"
     assert Held("k", "w", None, None, None, 0, 0.1, None).word == ""
+    assert Held("k", "w", 0.5, 0.4, 0.6, 9, None, None).word == ""
 
 
 def test_calibration_error_by_hand() -> None:
