@@ -120,7 +120,8 @@ def counted(
         "interval's better end meets the limit. `python -m benchmarks.boards worlds` "
         "goes on with what is missing.",
         f"Figures beside the oracle's, beside other rows, and of invariance are of the first {FEW} "
-        f"cases of each world, so far {len(beside)} of {FEW * len(WORLDS)}: `python -m benchmarks.boards beside` goes on with them.",
+        f"cases of each world, so far {len(beside)} of {FEW * len(WORLDS)}: "
+        "`python -m benchmarks.boards beside` goes on with them.",
         *(f"Frozen at commit {one}, whose hash is the seed." for one in _frozen(lines)),
     ]
     if beside:
