@@ -98,11 +98,9 @@ def _cut(folder: Path, truth: Truth) -> list[float]:
         _sure(folder / f"answers-{ORACLE}" / f"{whole}.json", truth),
         _sure(room / "answers" / f"{cut}.json", replace(truth, case=cut)),
     )
-    own, cut_own = (
-        json.loads((room / "answers" / f"{case}.json").read_text())
-        for room, case in ((folder, whole), (folder / _VARIED, cut))
-    )
-    return [float(alike(own, cut_own, key)[0]), *sure]
+    files = folder / "answers" / f"{whole}.json", folder / _VARIED / "answers" / f"{cut}.json"
+    own, other = (json.loads(file.read_text()) for file in files)
+    return [float(alike(own, other, key)[0]), *sure]
 
 
 def _ask_oracle(board: Path, told_board: Path, case: str) -> None:

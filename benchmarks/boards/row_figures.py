@@ -18,7 +18,7 @@ from tests.sealed.scoring.by_world import (
     mean_figure,
 )
 from tests.sealed.scoring.columns import COLUMNS
-from tests.sealed.scoring.intervals import median
+from tests.sealed.scoring.intervals import median, ranked
 from tests.sealed.scoring.rows import mean_of
 from tests.sealed.variations import VARIATIONS
 
@@ -124,6 +124,5 @@ def _figures(lines: Sequence[Line], row: Sequence[Line]) -> dict[str, float]:
         for which in (UNKNOWN, "gap")
     )
     if inside and outside:
-        one, two = np.array(inside)[:, None], np.array(outside)
-        found["auroc"] = float(np.mean((one > two) + 0.5 * (one == two)))
+        found["auroc"] = float(ranked(inside, outside).mean())
     return found

@@ -34,11 +34,7 @@ def frozen(rows: Sequence[Line]) -> str:
         If what is checked out differs from it.
     """
     name = str(rows[0]["frozen"]) if rows else _git("rev-parse", "HEAD").stdout.strip()
-    if _git("diff", "--quiet", name, "--", *MEASURED).returncode:
-        raise SystemExit(
-            f"the lines are of commit {name[:7]}, and the diagnosis has changed since: go on in a "
-            "work tree of that commit, with --output for the folder of these lines"
-        )
+    _check_unchanged_since(name, MEASURED)
     return name
 
 
@@ -51,10 +47,14 @@ def check_unchanged(rows: Sequence[Line]) -> None:
         If what is checked out differs from the commit of the first line.
     """
     name = str(rows[0]["commit"]).partition(" ")[0] if rows else "HEAD"
-    if _git("diff", "--quiet", name, "--", *MEASURED, "benchmarks/boards").returncode:
+    _check_unchanged_since(name, (*MEASURED, "benchmarks/boards"))
+
+
+def _check_unchanged_since(name: str, measured: Sequence[str]) -> None:
+    if _git("diff", "--quiet", name, "--", *measured).returncode:
         raise SystemExit(
-            f"the lines are of commit {name}, and what measures has changed since: go on in a work "
-            "tree of that commit, with --output for the folder of these lines"
+            f"the lines are of commit {name[:7]}, and what measures has changed since: go on in a "
+            "work tree of that commit, with --output for the folder of these lines"
         )
 
 

@@ -165,7 +165,7 @@ def figures_of(rows: Mapping[str, Sequence[Marks]]) -> dict[str, Figure]:
     if ORACLE in rows:
         for key, column in PAIRED.items():
             theirs, own = (_values(row, column) for row in (rows[ORACLE], ours))
-            out[key] = mean_figure(theirs - own)
+            out[key] = _boot(theirs - own, _mean)
     said = _stated(one for one in ours if one.is_clear)
     out["sure_and_wrong"] = mean_figure(1.0 - said[said[:, 0] >= SURE, 1])
     out["calibration_excess"] = _boot(said, _excess)
@@ -212,7 +212,11 @@ def mean_figure(values: FloatArray) -> Figure:
     """
     if len(values) and np.isin(values, (0.0, 1.0)).all():
         return float(values.mean()), *wilson(float(values.sum()), len(values)), len(values)
-    return _boot(values, lambda drawn: float(drawn.mean()))
+    return _boot(values, _mean)
+
+
+def _mean(values: FloatArray) -> float:
+    return float(values.mean())
 
 
 def _boot(values: FloatArray, figure: Callable[[FloatArray], float]) -> Figure:

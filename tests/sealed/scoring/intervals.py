@@ -81,6 +81,12 @@ def _bootstrapped(
     return Figure(float(figure(own[None, :])[0]), float(low), float(high), len(own))
 
 
+def ranked(inside: Sequence[float], outside: Sequence[float]) -> FloatArray:
+    """Return for each pair whether the first is above the second, 1 or 0, a half for a tie."""
+    one, two = np.asarray(inside)[:, None], np.asarray(outside)
+    return np.asarray((one > two) + 0.5 * (one == two))
+
+
 def auroc(inside: Sequence[float], outside: Sequence[float]) -> Figure | None:
     """Return how often one of ``inside`` is above one of ``outside``, ties counting half.
 
@@ -89,8 +95,7 @@ def auroc(inside: Sequence[float], outside: Sequence[float]) -> Figure | None:
     """
     if not inside or not outside:
         return None
-    one, two = np.asarray(inside), np.asarray(outside)
-    above = (one[:, None] > two) + 0.5 * (one[:, None] == two)
+    one, two, above = inside, outside, ranked(inside, outside)
     rng = np.random.default_rng(_SEED)
     drawn = [
         above[np.ix_(rng.integers(0, len(one), len(one)), rng.integers(0, len(two), len(two)))]
