@@ -13,7 +13,7 @@ from hardware.description.arrays import FloatArray
 from tests.sealed.generator.case import Case, make
 from tests.sealed.generator.catalogue import BY_NAME
 from tests.sealed.generator.sizing import Sized
-from tests.sealed.true_forms import FILE, Changes, in_true_form, read_forms, write_forms
+from tests.sealed.true_forms import FILE, Changes, _shared, in_true_form, read_forms, write_forms
 
 _SEED, _INDEX, _OFFSET_N = 71, 4, 0.7
 
@@ -91,3 +91,19 @@ def test_a_fit_says_what_it_is_told() -> None:
 
 def test_luck_has_a_size_and_no_form() -> None:
     assert _told("known", by_chance=True).signature == pytest.approx([1.0, 18.0, 1.0])
+
+
+def test_noise_that_does_not_cancel_is_no_change() -> None:
+    """Of a change of 3 in noise of 1, over many runs, 3 is told; of noise alone a tenth at most."""
+    rng, runs = np.random.default_rng(20264), [f"run-{number}" for number in range(400)]
+    line, scatter = Component("force_aft", Part.LINE, 1), Component("", Part.PERIOD_SCATTER)
+
+    def draw() -> Changes:
+        return {run: {line: 3.0 + rng.normal(), scatter: rng.normal()} for run in runs}
+
+    told = _shared((draw(), draw()))
+    assert np.mean([told[run][line] for run in runs]) == pytest.approx(3.0 * 9.0 / 9.5, rel=0.03)
+    assert np.std([told[run][scatter] for run in runs]) < 0.1
+    same = draw()
+    exact = _shared((same, same))
+    assert [exact[run][line] for run in runs] == pytest.approx([same[run][line] for run in runs])

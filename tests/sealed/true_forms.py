@@ -7,6 +7,7 @@ form the catalogue knows. Hypotheses that name something else keep the catalogue
 """
 
 import json
+from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import fields, replace
@@ -40,7 +41,8 @@ Shown = Mapping[str, Mapping[Component, float]]
 """What is observed, by run and component."""
 
 _QUIET: Final = 1e-3  # noise and steps over those of the case
-_DRAWS: Final = 2  # of the noise
+_DRAWS: Final = 2  # of the noise: two tell what is shared
+_NOTHING: Final = 1e-300  # below the square of any change
 _REPEATING: Final = (*STEADY_PARTS, *SETTLING)
 
 Changes = Mapping[str, Mapping[Component, float]]
@@ -98,9 +100,7 @@ def changes_of(case: "Case", variation: Variation | None = None) -> dict[str, Ch
     out: dict[str, Changes] = {}
     for sized in case.content.effects:
         there = [_observed(one, sized.put(usual), variation) for one in records]
-        out[_name(case, sized)] = {
-            run.name: _changes(there, without, run.name) for run in case.campaign.runs
-        }
+        out[_name(case, sized)] = _changes(there, without)
     return out
 
 
@@ -139,15 +139,39 @@ def _quiet(case: "Case") -> "Case":
     return replace(case, campaign=replace(case.campaign, rig=rig))
 
 
-def _changes(there: Sequence[Shown], without: Sequence[Shown], run: str) -> dict[Component, float]:
-    """Return changes of a run: of what repeats without noise, of all else on the case's noise."""
+def _changes(there: Sequence[Shown], without: Sequence[Shown]) -> Changes:
+    """Return changes: of what repeats those without noise, of all else what the draws share."""
     quiet, *loud = (
-        _difference(shown.get(run, {}), usual.get(run, {}))
+        {run: _difference(shown[run], usual.get(run, {})) for run in shown}
         for shown, usual in zip(there, without, strict=True)
     )
-    found = {one: change for one, change in quiet.items() if one.part in _REPEATING}
-    for one in {component for row in loud for component in row if component.part not in _REPEATING}:
-        found[one] = float(np.mean([row[one] for row in loud if one in row]))
+    shared = _shared(loud)
+    return {
+        run: {one: change for one, change in row.items() if one.part in _REPEATING}
+        | shared.get(run, {})
+        for run, row in quiet.items()
+    }
+
+
+def _shared(draws: Sequence[Changes]) -> dict[str, dict[Component, float]]:
+    """Return the mean of two draws' changes, less the noise that is left in it.
+
+    Where an effect cuts records otherwise, noise does not cancel. Over a channel's part the draws'
+    product is the square of what they share; the square of their mean has the noise's beside it.
+    """
+    one, other = draws
+    by_part: dict[tuple[str, Part], list[tuple[str, Component]]] = defaultdict(list)
+    for run, row in one.items():
+        for component in row.keys() & other.get(run, {}).keys():
+            if component.part not in _REPEATING:
+                by_part[component.channel, component.part].append((run, component))
+    found: dict[str, dict[Component, float]] = defaultdict(dict)
+    for there in by_part.values():
+        pairs = np.array([(one[run][component], other[run][component]) for run, component in there])
+        mean = pairs.mean(axis=1)
+        share = max(float(pairs.prod(axis=1).sum()), 0.0) / max(float(mean @ mean), _NOTHING)
+        for (run, component), value in zip(there, mean, strict=True):
+            found[run][component] = share * float(value)
     return found
 
 
