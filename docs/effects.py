@@ -42,17 +42,19 @@ _HEAD: Final = """# The catalogue of effects
 
 Written by `python docs/effects.py` from the classes in `sim/effects/`; do not edit.
 `pmm effects NAME` shows one whole, with its signature at a set-point of your choice, and `--plot`
-draws it; `pmm simulate --effect NAME:PARAM=VALUE` switches it on.
+draws it; `pmm simulate --effect NAME:PARAM=VALUE` switches it on. A value outside the range in
+brackets is refused.
 [adding-an-effect.md](adding-an-effect.md) shows how to add one.
 
 The last column says how far the exact periodic steady state with the effect, less that without, is
-from the signature that theory states: the largest distance over all orders that the signature
-names, relative to its norm, of {count} set-points (0.5 and 1 Hz, 10 to 30 mm, strut phases from 0
-to 180 degrees, 0 and 1 m/s), on the nominal vertical rig with typical parameters and {points}
-points a period. What shows with a drift (trim) angle alone has one of {drift:g} rad there. Wherever
-it is above 1e-3, the power of the effect at which theory stops stands beside it, or that theory has
-small angles where the model pitches by up to 0.06 rad. Tolerances over more set-points, both rigs,
-air and water stand in `tests/sim/effects/`.
+from the signature that theory states: over all orders up to the highest that the signature names,
+those that it says do not change among them, relative to the norm of what theory states of the
+forces, or of the displacements. It is the largest distance of {count} set-points (0.5 and 1 Hz, 10
+to 30 mm, strut phases from 0 to 180 degrees, 0 and 1 m/s), on the nominal vertical rig with typical
+parameters and {points} points a period. What shows with a drift (trim) angle alone has one of
+{drift:g} rad there. Wherever it is above 1e-3, the power of the effect at which theory stops stands
+beside it, or that theory has small angles where the model pitches by up to 0.06 rad. Tolerances
+over more set-points, both rigs, air and water stand in `tests/sim/effects/`.
 
 Effects that do not repeat with the shaft, or change what an analysis takes for a period, have no
 place in a periodic steady state; their signatures are tested in the time domain there.
@@ -106,7 +108,7 @@ def _row(kind: type[Effect]) -> str:
     parameters = "<br>".join(
         f"`{one.name}` {one.typical:.4g} ({one.plausible})"
         + ("" if one.unit == "1" else f" {one.unit}")
-        + (f": {one.one_sign}" if one.one_sign else "")
+        + f": {one.meaning}"
         for one in kind.parameters()
     )
     cells = (kind.code, f"`{kind.name}`", kind.stage, kind.title, parameters, _agreement(kind))

@@ -152,7 +152,7 @@ def campaign_of(path: Path) -> Campaign:
         If it is no campaign.
     """
     keys = read_toml(path).keys()
-    if "runs" not in keys and keys & {"measured", "suspensions"}:
+    if "runs" not in keys and keys & {"measured", "suspensions", "forced"}:
         raise ConfigurationError(
             f"{path} describes a pendulum or a free decay, no campaign: see pmm gap pendulum and "
             "pmm gap add-pendulum"

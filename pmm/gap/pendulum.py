@@ -37,6 +37,7 @@ from sim.pendulum.suspension import Suspension
 _LARGEST_RAD = 1.6  # no pendulum test begins with a quarter of a turn
 _PERIODS_APART = 1.5  # factor: no gap that is told by swings, but another body
 _GATE_AMPLITUDE_RAD = 0.1
+_DISPLACEMENTS = ("rad", "m", "1", "")  # where a heading has no unit, that of the body
 _LET_GO = 1.0  # swings, in which a hand, a lag and the memory of the water still show
 _GATE_SWINGS = 4  # in a window
 _OWN = ("line_excess", "spacing", "amplitude_period")  # each suspension has its own error
@@ -132,7 +133,13 @@ def _check_period(trial: Trial, period_s: float) -> None:
 
 def _part(record: Record, folder: Path) -> UsablePart:
     path = folder / record.record
-    part = usable_part(series_from_recording(check_whole(read_recording(path)), record.channel))
+    series = series_from_recording(check_whole(read_recording(path)), record.channel)
+    if series.unit not in _DISPLACEMENTS:
+        raise DataError(
+            f"{path}: channel {record.channel!r} is in {series.unit}; a decay is compared as a "
+            "displacement, in rad or m: choose a channel of that, or integrate this one"
+        )
+    part = usable_part(series)
     if part.series.unit in ("rad", "") and part.first_amplitude > _LARGEST_RAD:
         raise DataError(
             f"{path}: the first swing of {record.channel} is "

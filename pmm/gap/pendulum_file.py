@@ -170,7 +170,7 @@ class PendulumCase:
     forced: tuple[ForcedTable, ...] = ()
     over_frequency: OverFrequency | None = None
     suspensions: tuple[GateTable, ...] = ()
-    gyradius_m: float = 1.0
+    gyradius_m: float = 0.0  # not stated
     gravity_m_s2: float = 9.80665
     swings: int = 60
     tolerances: Mapping[str, float] = field(default_factory=dict)
@@ -196,6 +196,9 @@ def read_case(path: Path) -> PendulumCase:
         if sum(kinds) != 1:
             said = "or [[suspensions]], or [[forced]]: give exactly one of them"
             faults.append(Fault(("measured",), said))
+        if case.suspensions and not case.gyradius_m > 0.0:
+            said = "is needed by [[suspensions]], above 0: what the body is believed to have, in m"
+            faults.append(Fault(("gyradius_m",), said))
         models = (case.simulated, case.floating, case.pivot)
         if case.measured and sum(model is not None for model in models) != 1:
             said = "or [floating], or [pivot]: give exactly one of them"

@@ -52,7 +52,7 @@ class Hum(Effect):
         1.0,
         2000.0,
         "Hz",
-        "frequency of the mains, or of what",
+        "frequency of the mains, or of what else hums",
         held=True,
         starts=(50.0, 60.0),
         one_sign=OneSign.RATE,

@@ -151,3 +151,8 @@ def test_errors_of_a_file_are_said(tmp_path: Path) -> None:
     path.write_text('name = "x"\ngyradiusm = 1.0\n')
     with pytest.raises(ConfigurationError, match="gyradius_m"):
         read_case(path)
+    hung = '[[suspensions]]\nname = "a"\ngates = "a.csv"\nhalf_spacing_m = 0.2\nline_m = 0.6\n'
+    for stated in ("", "gyradius_m = -0.3\n"):
+        path.write_text(f'name = "x"\n{stated}{hung}')
+        with pytest.raises(ConfigurationError, match="gyradius_m is needed by"):
+            read_case(path)

@@ -145,9 +145,10 @@ def test_one_simulation_is_to_be_given(tmp_path: Path) -> None:
     assert "or [floating], or [pivot]: give exactly one of them" in done.stderr
 
 
+@pytest.mark.parametrize("example", ["decay/roll", "afloat/heave"])
 @pytest.mark.parametrize("verb", [(), ("add",), ("diagnose",)])
-def test_a_campaigns_command_names_the_pendulums(verb: tuple[str, ...]) -> None:
-    found = CliRunner().invoke(cli, ["gap", *verb, str(HOUSE / "examples/decay/roll.toml")])
+def test_a_campaigns_command_names_the_pendulums(verb: tuple[str, ...], example: str) -> None:
+    found = CliRunner().invoke(cli, ["gap", *verb, str(HOUSE / f"examples/{example}.toml")])
     assert found.exit_code == 2
     assert "no campaign: see pmm gap pendulum and pmm gap add-pendulum" in " ".join(
         found.output.split()
@@ -172,6 +173,17 @@ def test_a_record_that_cannot_be_the_bodys_is_refused(
     done = run(path)
     assert done.exit_code == 1
     assert said in " ".join(done.stderr.split())
+
+
+@pytest.mark.parametrize("unit", ["rad/s", "m/s2", "V"])
+def test_a_decay_of_what_is_no_displacement_is_refused(tmp_path: Path, unit: str) -> None:
+    """A rate gyro's record would be taken for an angle, and sizes come out wrong."""
+    path = recorded(tmp_path, decay_bench(AFLOAT, release=0.2), "roll", FLOATING)
+    text = (tmp_path / "decay.csv").read_text().replace("time_s,roll", f"time_s,roll [{unit}]")
+    (tmp_path / "decay.csv").write_text(text)
+    done = run(path)
+    assert done.exit_code == 1
+    assert f"channel 'roll' is in {unit}; a decay is compared as" in " ".join(done.stderr.split())
 
 
 @pytest.mark.slow
