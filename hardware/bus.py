@@ -81,6 +81,12 @@ class BusConfiguration:
             raise ConfigurationError(
                 f"sync_rate_hz = {self.sync_rate_hz:g} has to be above 0, at most {FASTEST_HZ:g}"
             )
+        if not 0 < self.heartbeat_ms < self.heartbeat_limit_ms:
+            raise ConfigurationError(
+                f"heartbeat_limit_ms = {self.heartbeat_limit_ms} has to be above heartbeat_ms = "
+                f"{self.heartbeat_ms}, which has to be above 0: by them drives stop when this "
+                "program is gone"
+            )
 
     @property
     def period_s(self) -> float:

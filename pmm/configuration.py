@@ -140,17 +140,22 @@ class Bounds(NamedTuple):
     low: float
     high: float
     from_low: bool = False
+    hint: str = ""
 
     def fault(self, value: float) -> str | None:
         """Say what a value should be that is not within; ``None`` if it is."""
         if value < self.low or (value == self.low and not self.from_low):
-            return f"should be {self.low:g} or more" if self.from_low else "should be above 0"
-        return f"should be at most {self.high:g}" if value > self.high else None
+            least = f"should be {self.low:g} or more" if self.from_low else "should be above 0"
+            return least + self.hint
+        return f"should be at most {self.high:g}{self.hint}" if value > self.high else None
 
 
 _MOST: Final = 1e12  # of whatever unit, as of a sample: no tank has more
 _COUNT: Final = 100_000  # of periods: more than two weeks at 0.1 Hz
 _SECONDS: Final = 1e6  # eleven days
+_DEGREES: Final = "; in degrees? Then the key ends in _deg"
+_ANY_WAY: Final = Bounds(-math.pi, math.pi, from_low=True, hint=_DEGREES)
+_A_QUARTER: Final = Bounds(-0.5 * math.pi, 0.5 * math.pi, from_low=True, hint=_DEGREES)
 # What a number of that name must be, in whichever table it stands. Ten times more would ask for
 # what no tank does and no memory holds; ten times less would refuse long swings and fast gauges.
 _ABOVE_0: Final = (
@@ -167,6 +172,10 @@ _FROM_0: Final = (
     "k_roll_m k_yaw_m noise_rms resolution speed_m_s sway_coefficient"
 )
 _BOUNDS: Final[Mapping[str, Bounds]] = {
+    "drift_rad": _ANY_WAY,
+    "heel_rad": _A_QUARTER,
+    "release_rad": _A_QUARTER,
+    "rudder_angle_rad": _A_QUARTER,
     **dict.fromkeys(_ABOVE_0.split(), Bounds(0.0, _MOST)),
     **dict.fromkeys(_FROM_0.split(), Bounds(0.0, _MOST, from_low=True)),
     "duration_s": Bounds(0.0, _SECONDS),

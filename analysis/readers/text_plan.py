@@ -7,9 +7,9 @@ from typing import Final
 import numpy as np
 
 from analysis.readers.clock import CLOCK, DATE
-from analysis.readers.columns import ChannelColumn, ColumnMap
+from analysis.readers.columns import ChannelColumn, ColumnMap, TimeColumn
 from analysis.readers.columns_options import COMMAND_LINE
-from analysis.readers.headers import Header, find_header, unit_hint
+from analysis.readers.headers import Header, find_header, parse_header, unit_hint
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from hardware.description.errors import ConfigurationError, DataError
@@ -38,7 +38,9 @@ class ChannelPlan:
         return Channel(self.spec.name, resolved.si, full_scale_si), factor, flags
 
     def _unit(self) -> tuple[Unit, tuple[Flag, ...]]:
-        name, map_unit, stated = self.spec.name, self.spec.unit, self.header.unit
+        name, map_unit = self.spec.name, self.spec.unit
+        # A map that asks for "F1 [kN]" states the unit of a column "F1".
+        stated = self.header.unit or parse_header(0, self.spec.column).unit
         chosen = map_unit or stated
         if chosen is None:
             text = f"{name}: no unit is stated; values are kept as they are"
@@ -198,9 +200,9 @@ def _check_unique(channels: Iterable[ChannelPlan], where: str) -> None:
 
 
 def time_factor(
-    header: Header, own_unit: str | None, stamps: FloatArray, where: str
+    header: Header, mapped: TimeColumn | None, stamps: FloatArray, where: str
 ) -> tuple[float, tuple[Flag, ...]]:
-    """Return what turns time stamps into seconds.
+    """Return what turns time stamps into seconds; ``mapped`` is the map's word on them, if any.
 
     Stamps without a unit are seconds, unless they lie where only a clock that counts fractions of
     them since 1970 does.
@@ -210,7 +212,8 @@ def time_factor(
     DataError
         If the column's unit is not one of time.
     """
-    name = own_unit or header.unit
+    asked = None if mapped is None else mapped.unit or parse_header(0, mapped.column).unit
+    name = asked or header.unit
     if name == CLOCK:
         return 1.0, ()
     if name is None:

@@ -127,8 +127,7 @@ def _time_base(plan: ColumnPlan, table: Table, columns: ColumnMap, where: str) -
     flags: tuple[Flag, ...] = ()
     time_s = np.zeros(1)
     if plan.time is not None:
-        own_unit = columns.time.unit if columns.time else None
-        factor, flags = time_factor(plan.time, own_unit, table[plan.time], where)
+        factor, flags = time_factor(plan.time, columns.time, table[plan.time], where)
         time_s = table[plan.time] * factor
         if plan.time.unit == CLOCK:
             time_s, passed = past_midnight(time_s)

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 from hardware.description.errors import ConfigurationError
 from hardware.description.kinds import RunKind
 from hardware.description.oscillator import Oscillator
-from hardware.description.setpoint import check_within
+from hardware.description.setpoint import Medium, check_within
 from pmm.campaign.attitude import attitude_faults
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.column_table import take_columns
@@ -116,6 +116,7 @@ def _run_faults(table: dict[str, Any]) -> Iterator[Fault]:
     for place, record in records:
         yield from _name_faults(record.name, (*place, "name"), names)
     for place, run in runs:
+        yield from _run_kind_faults(run, place)
         run_oscillator = run.recorded_with.oscillator if run.recorded_with is not None else None
         if (rig := run_oscillator or oscillator) is not None:
             yield from _oscillator_faults(rig, run, place)
@@ -152,7 +153,16 @@ def _zero_faults(run: Run | AtRest, place: Place, zeros: list[str]) -> Iterator[
             yield Fault((*place, key), f"= {name!r} is no zero run of the campaign; {hint}")
 
 
+def _run_kind_faults(run: Run, place: Place) -> Iterator[Fault]:
+    if not run.kind.oscillates:
+        yield Fault((*place, "kind"), f"= {run.kind.value!r} is of [[at_rest]]: the shaft stands")
+    elif run.kind.in_air and run.medium is not Medium.AIR:
+        yield Fault(place, f'needs medium = "air": a run of kind {run.kind} is one in air')
+
+
 def _kind_faults(record: AtRest, place: Place) -> Iterator[Fault]:
+    if record.kind.oscillates:
+        yield Fault((*place, "kind"), f"= {record.kind.value!r} is of [[runs]]: the shaft turns")
     if record.kind is RunKind.CIRCLE and not (
         record.turn_rate_rad_s and record.carriage_speed_m_s > 0.0
     ):

@@ -139,6 +139,9 @@ def examine_rig(path: Path) -> RigFileReading:
     hardware = _read_devices(devices, faults)
     if tables is not None and hardware is not None:
         faults += [*gauge_faults(tables, hardware), *carriage_faults(tables, hardware)]
+        if tables.realtime is False and not is_simulated(hardware):
+            said = "= false is for a bus 'pmm-simulated': a real rig keeps to the clock"
+            faults.append(Fault(("realtime",), said))
     modes = _more_modes(tables, path, faults)
     calibration = _calibration(tables, hardware, path, faults)
     oscillator = validate(Oscillator, table.get("oscillator", {}), [])
@@ -152,7 +155,8 @@ def examine_rig(path: Path) -> RigFileReading:
     # As written: a table that is read again elsewhere is handed on untouched.
     campaign = MappingProxyType(dict(original.get("campaign", {})))
     more = {
-        "gauges": tables.gauges or gauges_of(hardware),
+        # What no [[gauges]] states has its amplifier's range: no force goes unwatched for it.
+        "gauges": tuple({g.channel: g for g in (*gauges_of(hardware), *tables.gauges)}.values()),
         "modes": tables.modes + modes,
         "realtime": not free if tables.realtime is None else tables.realtime,
         "campaign": campaign,

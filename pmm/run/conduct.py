@@ -51,7 +51,8 @@ class Conduct:
     since
         Cycle in which the present state was entered.
     rested_since
-        Cycle since which the shaft has been at rest: calm water is counted from there.
+        Cycle since which shaft and carriage have been at rest: calm water is counted from there.
+        ``None`` in a run that moves them, and before the first one.
     command_given
         Whether the present state has given its command.
     placed

@@ -79,11 +79,19 @@ def _pausing(c: Conduct) -> State | None:
 
 def _enter_starting(c: Conduct) -> None:
     c.measurement, c.path = c.begin(c.present), LivePath(c.rig)
+    if _stirs(c.present):
+        c.rested_since = None
     if c.rig.carriage is None:
         point = c.present.set_point
         c.questions.ask(c.surroundings.tow(point.carriage_speed_m_s, point.turn_rate_rad_s))
     if c.present.kind is RunKind.FREE_DECAY:
         c.questions.ask(c.surroundings.hold(c.present.set_point.release_rad))
+
+
+def _stirs(run: RunPlan) -> bool:
+    """Tell whether a run moves the water, so that the next one waits for calm anew."""
+    point = run.set_point
+    return run.oscillates or run.kind is RunKind.FREE_DECAY or point.carriage_speed_m_s != 0.0
 
 
 def _at_speed(c: Conduct) -> bool:
@@ -106,7 +114,6 @@ def _starting(c: Conduct) -> State | None:
         return State.SETTLING
     if not c.command_given:
         c.command_given = True
-        c.rested_since = None
         shaft.turn(c.present.set_point.frequency_hz)
         c.leads = c.speed_path is not None
     if not shaft.at_speed:

@@ -41,6 +41,7 @@ class Stopper:
         """
         c = self._conduct
         if c.command_given and c.towed:  # on its way back the carriage has a deadline of its own
+            c.rested_since = c.rig.number
             return c.questions.ask_on() and not c.moving
         if c.moving:
             late = c.elapsed_s > _REST_S + c.ramp_s

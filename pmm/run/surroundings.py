@@ -12,6 +12,7 @@ from analysis.kinematics.geometry import Geometry
 from hardware.demand import Demand
 from hardware.description.arrangement import DriftBy
 from hardware.description.kinds import RunKind
+from hardware.description.known_loads import KnownMass
 from hardware.description.lines import Line
 from hardware.description.oscillator import Oscillator, Plane
 from hardware.description.setpoint import SetPoint
@@ -55,7 +56,7 @@ class Surroundings:
     release_rad: float = 0.0
     waves: tuple[float, float, float] = _CALM
     lines: tuple[Line, ...] = ()
-    mass_kg: float = 0.0
+    known_mass: KnownMass | None = None
     load: tuple[str, float] = ("", 0.0)
 
     def before(
@@ -142,10 +143,10 @@ class Surroundings:
 
     def _change_mass(self, run: RunPlan) -> Iterator[Demand]:
         mass = run.known_mass
-        mass_kg, at_m = (mass.mass_kg, mass.x_m) if mass is not None else (0.0, 0.0)
-        if mass_kg == self.mass_kg:
+        if mass == self.known_mass:
             return
-        self.mass_kg = mass_kg
+        self.known_mass = mass
+        mass_kg, at_m = (mass.mass_kg, mass.x_m) if mass is not None else (0.0, 0.0)
         request = f"put {mass_kg:g} kg on the model at x = {at_m:g} m" if mass else "take it off"
         yield Demand(f"mass: {request}; press Enter", "mass", mass_kg, at_m=at_m)
 

@@ -129,6 +129,13 @@ def test_a_rate_that_no_bus_has_is_refused(rate: float) -> None:
     assert f"sync_rate_hz = {rate:g} has to be above 0, at most 10000" in message
 
 
+@pytest.mark.parametrize(("limit_ms", "beat_ms"), [(0, 100), (100, 100), (300, 0), (-1, 100)])
+def test_a_bus_on_which_no_drive_misses_the_program_is_refused(limit_ms: int, beat_ms: int) -> None:
+    bus = {**BUS, "heartbeat_limit_ms": limit_ms, "heartbeat_ms": beat_ms}
+    message = refused({"bus": bus, "shaft": SHAFT})
+    assert f"heartbeat_limit_ms = {limit_ms} has to be above heartbeat_ms = {beat_ms}" in message
+
+
 def test_a_channel_name_twice_is_refused() -> None:
     second = {**FORCES, "node": 5}
     assert "'force_aft' is there 2 times" in refused({"bus": BUS, "forces": [FORCES, second]})

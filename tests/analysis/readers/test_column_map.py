@@ -57,6 +57,18 @@ def test_every_key(tmp_path: Path) -> None:
     )
 
 
+def test_a_unit_that_the_map_asks_for_counts_where_the_header_has_none(tmp_path: Path) -> None:
+    table = tmp_path / "table.csv"
+    rows = "".join(f"{20 * row},{row % 3}\n" for row in range(50))
+    table.write_text(f"Time,F1\n{rows}")
+    columns = ColumnMap((ChannelColumn("force_aft", "F1 [kN]"),), TimeColumn("Time [ms]"))
+    read = read_recording(table, columns)
+    assert read.sample_rate_hz == pytest.approx(50.0)
+    assert read.channels[read.index("force_aft")].unit == "N"
+    assert list(read.values("force_aft")[:3]) == [0.0, 1000.0, 2000.0]
+    assert not {"unit_missing", "time_unit_assumed"} & {flag.code for flag in read.flags}
+
+
 def test_options() -> None:
     found = parse_options(
         ["Fy=Fy [N]", "force_aft=-F1:kN", "Fz", "time=T:ms", "photocell=PC", "a=AI:0 [V]"]

@@ -10,6 +10,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from hardware.description.body import ShipModel
+from hardware.description.errors import ConfigurationError
 from hardware.description.kinds import Motion, RunKind
 from hardware.description.known_loads import KnownMass
 from hardware.rig_configuration import TABLES
@@ -154,7 +155,20 @@ def test_a_rig_on_a_real_bus_keeps_to_the_clock(tmp_path: Path) -> None:
     (tmp_path / "rig.toml").write_text(text)
     assert read_rig_file(tmp_path / "rig.toml").realtime is True
     (tmp_path / "rig.toml").write_text(f"realtime = false\n{text}")
-    assert read_rig_file(tmp_path / "rig.toml").realtime is False
+    with pytest.raises(ConfigurationError, match="realtime = false is for a bus 'pmm-simulated'"):
+        read_rig_file(tmp_path / "rig.toml")
+
+
+def test_a_force_that_no_gauge_states_is_watched_by_its_amplifier(tmp_path: Path) -> None:
+    """One gauge alone would leave the other strut without a safe load."""
+    stated = '[[gauges]]\nchannel = "force_aft"\nfull_scale_n = 100.0\n'
+    text = re.sub(r"\[\[gauges\]\]\n(?:\w.*\n)*", "", RIG_TEXT)
+    (tmp_path / "rig.toml").write_text(text)
+    amplifiers = read_rig_file(tmp_path / "rig.toml").watched.loads
+    (tmp_path / "rig.toml").write_text(f"{text}\n{stated}")
+    assert read_rig_file(tmp_path / "rig.toml").watched.loads == {
+        **amplifiers, "force_aft": 150.0
+    }  # fmt: skip
 
 
 def test_modes_of_the_pluck_test_are_read(tmp_path: Path) -> None:

@@ -76,6 +76,19 @@ def test_a_right_push_names_channel_and_sign(tmp_path: Path, force_n: float) -> 
     assert f"force_fore {force_n:+.2g}"[:14] in events
 
 
+def test_a_known_mass_that_is_moved_is_asked_for() -> None:
+    """Placed, the same again, moved, taken off: three things to be done."""
+    around = Surroundings()
+    masses = (KnownMass(5.0), KnownMass(5.0), KnownMass(5.0, 0.5), None)
+    runs = [oscillation(known_mass=mass) for mass in masses]
+    asked = [str(demand) for run in runs for demand in around.before(run, VERTICAL_1963)]
+    assert [text.split(";")[0] for text in asked] == [
+        "mass: put 5 kg on the model at x = 0 m",
+        "mass: put 5 kg on the model at x = 0.5 m",
+        "mass: take it off",
+    ]
+
+
 @pytest.mark.slow
 def test_a_known_mass_shows_gain_lag_and_sign_of_each_gauge(tmp_path: Path) -> None:
     runs = [

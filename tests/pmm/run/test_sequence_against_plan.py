@@ -87,6 +87,18 @@ def test_the_pause_is_counted_from_the_moment_the_shaft_rests(tmp_path: Path) ->
 
 
 @pytest.mark.slow
+def test_each_tow_waits_for_the_water_that_the_one_before_has_stirred(tmp_path: Path) -> None:
+    tow = {"speed_m_s": 1.0, "pause_before_s": 3.0}
+    runs = [at_rest(name, RunKind.STRAIGHT_TOW, **tow) for name in ("one", "two", "three")]
+    with bench(tmp_path, runs) as one:
+        for _ in range(2):
+            one.until(State.DONE)
+            rested_s = one.world.time_s
+            one.until(State.STARTING)
+            assert one.world.time_s - rested_s == pytest.approx(3.0, abs=0.1)
+
+
+@pytest.mark.slow
 def test_a_record_at_rest_is_as_long_as_planned_and_has_no_gap(tmp_path: Path) -> None:
     with bench(tmp_path, [at_rest("zero", RunKind.ZERO, 2.0)]) as one:
         one.finish()
