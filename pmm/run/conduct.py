@@ -28,8 +28,9 @@ from pmm.recorder.live_path import LivePath
 from pmm.recorder.run_recorder import RunEnd
 from pmm.run.errors import CarriageOffSpeedError, FrequencyError
 from pmm.run.measurement import Measurement
+from pmm.run.questions import Questions
 from pmm.run.states import RunStateMachine, State
-from pmm.run.surroundings import Questions, Surroundings
+from pmm.run.surroundings import Surroundings
 
 Begin = Callable[[RunPlan], Measurement]
 _UNKNOWN_RAMP_S: Final = 60.0  # of a shaft that states no acceleration

@@ -76,6 +76,7 @@ class FaultLatch:
             return
         self.cause = error
         c.questions.withdraw()
+        c.surroundings.forget_carriage()
         self._stopper.begin(error)
         c.go(State.FAULT)
         self._write_down(error)

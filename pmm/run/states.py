@@ -82,7 +82,7 @@ STATES: Final[Mapping[State, StateRow]] = MappingProxyType(
         ),
         _S.PAUSING: StateRow(
             "calm water",
-            "`pause_s` since the shaft came to rest",
+            "`pause_s` since shaft and carriage came to rest",
             (_S.STARTING, _S.STOPPING),
             _LEAVE,
         ),

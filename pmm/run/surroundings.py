@@ -2,7 +2,6 @@
 
 import json
 import math
-from collections import deque
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import asdict, dataclass
 from functools import partial
@@ -16,17 +15,17 @@ from hardware.description.known_loads import KnownMass
 from hardware.description.lines import Line
 from hardware.description.oscillator import Oscillator, Plane
 from hardware.description.setpoint import SetPoint
-from hardware.driver import Prompt
 from pmm.plan.run_plan import RunPlan
 
 _CALM: Final = (0.0, 0.0, math.pi)
 _WAVE_KEYS: Final = ("wave_frequency_hz", "wave_amplitude_m", "wave_heading_rad")
-Answered = Callable[[Demand, str], None]
 
 
 @dataclass
 class Surroundings:
-    """How things stand, as far as the operator has been asked to set them.
+    """How things stand, as far as the operator has said that they are so.
+
+    Each method yields what is to be done; it is taken as done when the next demand is asked for.
 
     Attributes
     ----------
@@ -73,12 +72,12 @@ class Surroundings:
         yield from self._change_medium(str(run.set_point.medium))
         yield from self._change_mass(run)
         if self.release_rad:
-            self.release_rad = 0.0
             yield Demand(
                 "release: hold the model in roll as before; press Enter when it is so",
                 "release",
                 0.0,
             )
+            self.release_rad = 0.0
         yield from self._change_waves(run.set_point)
         if "drift" not in by_axis:
             yield from self._change_drift(run, oscillator)
@@ -96,12 +95,17 @@ class Surroundings:
         """Yield what brings the carriage to a speed, straight or round a circle; 0 stops it."""
         if (speed_m_s, turn_rate_rad_s) == (self.carriage_speed_m_s, self.turn_rate_rad_s):
             return
-        self.carriage_speed_m_s, self.turn_rate_rad_s = speed_m_s, turn_rate_rad_s
         text = "carriage: stop and go back; press Enter when it stands"
         if speed_m_s:
             way = f" {_circle(speed_m_s, turn_rate_rad_s)}" if turn_rate_rad_s else ""
             text = f"carriage: tow at {speed_m_s:g} m/s{way}; press Enter when the speed is steady"
         yield Demand(text, "carriage", speed_m_s, turn_rate_rad_s=turn_rate_rad_s)
+        self.carriage_speed_m_s, self.turn_rate_rad_s = speed_m_s, turn_rate_rad_s
+
+    def forget_carriage(self) -> None:
+        """Take nothing for known of a carriage that people were driving as the rig was stopped."""
+        if self.carriage_speed_m_s:
+            self.carriage_speed_m_s = math.nan
 
     def fetch(self) -> Iterator[Demand]:
         """Yield what brings a carriage back that cannot go back by itself."""
@@ -116,9 +120,9 @@ class Surroundings:
 
     def let_go(self, release_rad: float) -> Iterator[Demand]:
         """Yield what has somebody let go of the model."""
-        self.release_rad = release_rad
         text = "release: let go of the model and do not touch it; press Enter at once"
         yield Demand(text, "release", release_rad)
+        self.release_rad = release_rad
 
     def push(self, channel: str, force_n: float) -> Iterator[Demand]:
         """Yield what has somebody push a gauge by hand, or let go."""
@@ -126,43 +130,43 @@ class Surroundings:
 
     def _change_load(self, load: tuple[str, float], *, by_hand: bool = False) -> Iterator[Demand]:
         (before, held), (channel, force_n) = self.load, load
-        self.load = load
         if before and before != channel and held:
             yield Demand(
                 f"load: take everything off {before}; press Enter", "load", 0.0, 1.0, before
             )
+            self.load = "", 0.0
         if channel and (before != channel or held != force_n):
             how = ("push" if force_n else "let go of") if by_hand else "load"
             text = f"load: {how} {channel} with {force_n:g} N; press Enter when it is so"
             yield Demand(text, "load", force_n, 1.0, channel)
+        self.load = load
 
     def _change_medium(self, medium: str) -> Iterator[Demand]:
         if medium != self.medium:
-            self.medium = medium
             yield Demand(f"medium: bring the model into {medium}; press Enter", "medium", medium)
+            self.medium = medium
 
     def _change_mass(self, run: RunPlan) -> Iterator[Demand]:
         mass = run.known_mass
         if mass == self.known_mass:
             return
-        self.known_mass = mass
         mass_kg, at_m = (mass.mass_kg, mass.x_m) if mass is not None else (0.0, 0.0)
         request = f"put {mass_kg:g} kg on the model at x = {at_m:g} m" if mass else "take it off"
         yield Demand(f"mass: {request}; press Enter", "mass", mass_kg, at_m=at_m)
+        self.known_mass = mass
 
     def _change_drift(self, run: RunPlan, oscillator: Oscillator) -> Iterator[Demand]:
         drift_rad = run.set_point.drift_rad
         if drift_rad != self.drift_rad:
-            self.drift_rad = drift_rad
             text = f"drift: {drift_prompt(Geometry.of(oscillator, run.set_point))}; press Enter"
             yield Demand(text, "drift", drift_rad)
+            self.drift_rad = drift_rad
 
     def _change_waves(self, point: SetPoint) -> Iterator[Demand]:
         asked = {key: getattr(point, key) for key in _WAVE_KEYS}
         waves = (point.wave_frequency_hz, point.wave_amplitude_m, point.wave_heading_rad)
         if waves == self.waves:
             return
-        self.waves = waves
         text = "stop the wave maker; press Enter when the water is calm"
         if point.wave_frequency_hz:
             text = (
@@ -171,18 +175,18 @@ class Surroundings:
                 "press Enter when the waves are there"
             )
         yield Demand(f"waves: {text}", "waves", json.dumps(asked))
+        self.waves = waves
 
     def _change_settings(self, point: SetPoint, by_axis: Collection[str]) -> Iterator[Demand]:
         for part, key, words in _SETTINGS:
             value = getattr(point, key)
             if part not in by_axis and value != getattr(self, key):
-                setattr(self, key, value)
                 yield Demand(f"{part}: {words(value)}", part, value)
+                setattr(self, key, value)
 
     def _change_lines(self, point: SetPoint) -> Iterator[Demand]:
         if point.lines == self.lines:
             return
-        self.lines = point.lines
         orders = ", ".join(str(line.order) for line in point.lines)
         request = (
             f"let each strut follow its table of lines {orders} over a turn of the master angle, "
@@ -192,36 +196,7 @@ class Surroundings:
         )
         table = json.dumps([asdict(line) for line in point.lines])
         yield Demand(f"lines: {request}; press Enter when it is so", "lines", table)
-
-
-class Questions:
-    """Asks demands one by one, once a cycle, so that the loop never waits for a person."""
-
-    def __init__(self, prompt: Prompt, answered: Answered) -> None:
-        self._prompt, self._answered = prompt, answered
-        self._open: deque[Demand] = deque()
-
-    @property
-    def present(self) -> str:
-        """The question that waits for its answer; empty without one."""
-        return str(self._open[0]) if self._open else ""
-
-    def ask(self, demands: Iterator[Demand]) -> None:
-        """Add demands on the operator, to be asked in turn."""
-        self._open.extend(demands)
-
-    def withdraw(self) -> None:
-        """Drop all demands that are not answered yet."""
-        self._open.clear()
-
-    def ask_on(self) -> bool:
-        """Ask on; tell whether everything is answered."""
-        while self._open:
-            answer = self._prompt(self._open[0])
-            if answer is None:
-                return False
-            self._answered(self._open.popleft(), answer)
-        return True
+        self.lines = point.lines
 
 
 def drift_prompt(geometry: Geometry) -> str:
