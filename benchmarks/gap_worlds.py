@@ -7,6 +7,8 @@ here their lines are counted and held to the limits of ``tests/sealed/worlds.tom
 from collections.abc import Iterator, Sequence
 from typing import Final
 
+import numpy as np
+
 from benchmarks.boards.beside import CASES as FEW
 from benchmarks.boards.learned import CALIBRATED, figures_by_row
 from benchmarks.boards.row_figures import SHOWN, figures_beside, rows_beside
@@ -85,11 +87,19 @@ def _same(lines: Sequence[Line], again: Sequence[Line]) -> str:
         if (key := (one["campaign"], one["seed"])) in marks
     ]
     same = sum(
-        whole["stated"] == other["stated"]
-        and all(whole["values"][key] == other["values"][key] for key in whole["values"])
+        _agree(whole["stated"], other["stated"])
+        and all(_agree(whole["values"][key], other["values"][key]) for key in whole["values"])
         for whole, other in pairs
     )
-    return f"The diagnosis has the marks of the worlds' lines in {same} of {len(pairs)} cases."
+    told = f"{same} of {len(pairs)} cases"
+    return f"The diagnosis has the marks of the worlds' lines, to twelve digits, in {told}."
+
+
+def _agree(one: Sequence[float] | None, other: Sequence[float] | None) -> bool:
+    """Tell whether marks agree but for the order in which they were summed."""
+    if one is None or other is None:
+        return one is other
+    return len(one) == len(other) and bool(np.allclose(one, other, rtol=1e-12, atol=0.0))
 
 
 def _trained(learned: Sequence[Line]) -> str:

@@ -66,6 +66,16 @@ def parse_header(number: int, text: str) -> Header:
     return Header(number, text, text or f"column_{number}", _LOGGERS.get(text.casefold()))
 
 
+def stated_unit(header: Header, selector: str) -> str | None:
+    """Return the unit that a header states; where it has none, what its selector asks for.
+
+    ``F1 [kN]`` states the unit of a column ``F1``.
+    """
+    if header.unit or selector in (header.text, header.name):
+        return header.unit
+    return parse_header(0, selector).unit
+
+
 def unit_hint(name: str) -> str:
     """Return ``"; did you mean 'kN'?"`` for ``kNN`` or ``KN``, ``'kgf'`` for ``kg``, or nothing."""
     shorter = [name[:k] + name[k + 1 :] for k in range(len(name))]

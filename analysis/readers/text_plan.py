@@ -9,7 +9,7 @@ import numpy as np
 from analysis.readers.clock import CLOCK, DATE
 from analysis.readers.columns import ChannelColumn, ColumnMap, TimeColumn
 from analysis.readers.columns_options import COMMAND_LINE
-from analysis.readers.headers import Header, find_header, parse_header, unit_hint
+from analysis.readers.headers import Header, find_header, stated_unit, unit_hint
 from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from hardware.description.errors import ConfigurationError, DataError
@@ -39,8 +39,7 @@ class ChannelPlan:
 
     def _unit(self) -> tuple[Unit, tuple[Flag, ...]]:
         name, map_unit = self.spec.name, self.spec.unit
-        # A map that asks for "F1 [kN]" states the unit of a column "F1".
-        stated = self.header.unit or parse_header(0, self.spec.column).unit
+        stated = stated_unit(self.header, self.spec.column)
         chosen = map_unit or stated
         if chosen is None:
             text = f"{name}: no unit is stated; values are kept as they are"
@@ -212,8 +211,7 @@ def time_factor(
     DataError
         If the column's unit is not one of time.
     """
-    asked = None if mapped is None else mapped.unit or parse_header(0, mapped.column).unit
-    name = asked or header.unit
+    name = header.unit if mapped is None else mapped.unit or stated_unit(header, mapped.column)
     if name == CLOCK:
         return 1.0, ()
     if name is None:

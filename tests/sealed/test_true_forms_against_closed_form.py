@@ -13,7 +13,14 @@ from hardware.description.arrays import FloatArray
 from tests.sealed.generator.case import Case, make
 from tests.sealed.generator.catalogue import BY_NAME
 from tests.sealed.generator.sizing import Sized
-from tests.sealed.true_forms import FILE, Changes, _shared, in_true_form, read_forms, write_forms
+from tests.sealed.true_forms import (
+    FILE,
+    Changes,
+    in_true_form,
+    read_forms,
+    shared_changes,
+    write_forms,
+)
 
 _SEED, _INDEX, _OFFSET_N = 71, 4, 0.7
 
@@ -101,9 +108,9 @@ def test_noise_that_does_not_cancel_is_no_change() -> None:
     def draw() -> Changes:
         return {run: {line: 3.0 + rng.normal(), scatter: rng.normal()} for run in runs}
 
-    told = _shared((draw(), draw()))
+    told = shared_changes((draw(), draw()))
     assert np.mean([told[run][line] for run in runs]) == pytest.approx(3.0 * 9.0 / 9.5, rel=0.03)
     assert np.std([told[run][scatter] for run in runs]) < 0.1
     same = draw()
-    exact = _shared((same, same))
+    exact = shared_changes((same, same))
     assert [exact[run][line] for run in runs] == pytest.approx([same[run][line] for run in runs])

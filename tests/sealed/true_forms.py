@@ -145,7 +145,7 @@ def _changes(there: Sequence[Shown], without: Sequence[Shown]) -> Changes:
         {run: _difference(shown[run], usual.get(run, {})) for run in shown}
         for shown, usual in zip(there, without, strict=True)
     )
-    shared = _shared(loud)
+    shared = shared_changes(loud)
     return {
         run: {one: change for one, change in row.items() if one.part in _REPEATING}
         | shared.get(run, {})
@@ -153,7 +153,7 @@ def _changes(there: Sequence[Shown], without: Sequence[Shown]) -> Changes:
     }
 
 
-def _shared(draws: Sequence[Changes]) -> dict[str, dict[Component, float]]:
+def shared_changes(draws: Sequence[Changes]) -> dict[str, dict[Component, float]]:
     """Return the mean of two draws' changes, less the noise that is left in it.
 
     Where an effect cuts records otherwise, noise does not cancel. Over a channel's part the draws'

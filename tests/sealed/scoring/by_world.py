@@ -4,6 +4,7 @@ The oracle is a row of the board, ``answers-oracle/``: the same engine, told the
 of what is there. Without it the paired figures are left out; docs/sealed.md says what each is.
 """
 
+import math
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -187,7 +188,7 @@ def _values(marks: Sequence[Marks], column: str) -> FloatArray:
 def class_probability(answer: Answer) -> float:
     """Return the probability of what an answer says and of what it calls the same."""
     names = {answer.said, *(stated(answer) if len(named(answer.said)) == 1 else ())}
-    return float(min(sum(answer.probabilities.get(name, 0.0) for name in names), 1.0))
+    return min(math.fsum(answer.probabilities.get(name, 0.0) for name in names), 1.0)
 
 
 def calibration_error(said: FloatArray, right: FloatArray) -> float:
