@@ -5,7 +5,7 @@ from typing import Final
 
 from hardware.cia402 import ERROR_WORDS, ControlWord, DriveState, Mode, StatusWord
 from hardware.description.errors import ConfigurationError
-from hardware.dictionary import Entry
+from hardware.dictionary import Entry, has
 from hardware.drive_state_machine import DriveStateMachine, Goal
 from hardware.errors import (
     DriveFaultError,
@@ -16,7 +16,7 @@ from hardware.errors import (
 )
 from hardware.limits import READ_BACK_SHARE, REST_DEADLINE_S
 from hardware.motion import EncoderMotion
-from hardware.node import Node
+from hardware.node import CONSUMED_BEAT, Node
 from hardware.sdo import Number
 
 CONTROL_WORD, STATUS_WORD = Entry(0x6040), Entry(0x6041)
@@ -42,6 +42,7 @@ _SAFETY: Final = (
 )
 # What CiA 402 leaves to the maker: a drive without one of them is named, and used all the same.
 _OPTIONAL: Final = {
+    0x1016: "consumer heartbeat time: it goes on when the controller falls silent",
     0x6007: "abort connection option: it may go on when the controller falls silent",
     0x605A: "quick stop option: it stops as its maker chose",
     0x605B: "shutdown option: it stops as its maker chose",
@@ -131,11 +132,11 @@ class Drive:
                     f"{self.node.name}: the drive does not support {mode.name.lower()} "
                     f"(object 6502 = 0x{supported:08X}, bit {mode.value - 1} is 0)"
                 )
-        written = [(at, self._keep(at, value)) for at, value in (*_SAFETY, *settings)]
+        lacking = [at for at in (CONSUMED_BEAT,) if not has(self.node.dictionary, at)]
+        lacking += [at for at, value in (*_SAFETY, *settings) if not self._keep(at, value)]
         self.notes = tuple(
             f"{self.node.name}: the drive lacks object {at}, {_OPTIONAL[at.object_index]}"
-            for at, is_kept in written
-            if not is_kept
+            for at in lacking
         )
 
     def _keep(self, at: Entry, value: Number) -> bool:

@@ -13,7 +13,7 @@ Values = tuple[Number, ...]
 _NOT_VALID: Final = 1 << 31
 _EVERY_SYNC, _AT_ONCE = 1, 255
 _SYNC_COB_ID, _SYNC_PERIOD, _SYNC_OVERFLOW = Entry(0x1005), Entry(0x1006), Entry(0x1019)
-_CONSUMED_BEAT, _PRODUCED_BEAT = Entry(0x1016, 1), Entry(0x1017)
+CONSUMED_BEAT, _PRODUCED_BEAT = Entry(0x1016, 1), Entry(0x1017)
 
 
 class PdoStream:
@@ -131,8 +131,8 @@ class Node:
             (_SYNC_COB_ID, 0x80),
             (_SYNC_PERIOD, round(bus.period_s * 1e6)),
             (_SYNC_OVERFLOW, bus.sync_overflow),
-            (_CONSUMED_BEAT, 0),  # an earlier controller's last heartbeat must not count
-            (_CONSUMED_BEAT, consumed),
+            (CONSUMED_BEAT, 0),  # an earlier controller's last heartbeat must not count
+            (CONSUMED_BEAT, consumed),
             (_PRODUCED_BEAT, bus.heartbeat_ms),
         ):
             if has(self.dictionary, at):

@@ -75,8 +75,7 @@ class FaultLatch:
         if c.state is State.FAULT:
             return
         self.cause = error
-        c.questions.withdraw()
-        c.surroundings.forget_carriage()
+        self._stopper.call_off()
         self._stopper.begin(error)
         c.go(State.FAULT)
         self._write_down(error)

@@ -291,5 +291,4 @@ class RunControl:
         self.rig.quick_stop()
         if self.state is State.STOPPING:
             self._stopper.power_off()  # at rest; a drive that does not brake has its deadline now
-        self._conduct.questions.withdraw()
-        self._conduct.surroundings.forget_carriage()
+        self._stopper.call_off()

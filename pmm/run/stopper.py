@@ -31,6 +31,13 @@ class Stopper:
         for axis in self._conduct.rig.powered():
             axis.disable()
 
+    def call_off(self) -> None:
+        """Ask people for nothing more, and tell those who drive the carriage to stop it."""
+        c = self._conduct
+        c.questions.withdraw()
+        if c.surroundings.forget_carriage():
+            self._alarms.add("carriage: stop it now; people drive it and nothing else does")
+
     def at_rest(self) -> bool:
         """Return whether nothing moves and all is answered; at rest the shaft loses its power.
 

@@ -35,6 +35,8 @@ class Surroundings:
         Mean heading of the model to the tow, however it is set.
     rudder_angle_rad, revolutions_hz, heel_rad
         Of the rudder, of the propeller and of the model.
+    carriage_speed_m_s
+        Of a carriage that people drive; NaN from when they are asked for another until they answer.
     turn_rate_rad_s
         Of the carriage on a circle.
     release_rad
@@ -99,13 +101,15 @@ class Surroundings:
         if speed_m_s:
             way = f" {_circle(speed_m_s, turn_rate_rad_s)}" if turn_rate_rad_s else ""
             text = f"carriage: tow at {speed_m_s:g} m/s{way}; press Enter when the speed is steady"
+        self.carriage_speed_m_s = math.nan
         yield Demand(text, "carriage", speed_m_s, turn_rate_rad_s=turn_rate_rad_s)
         self.carriage_speed_m_s, self.turn_rate_rad_s = speed_m_s, turn_rate_rad_s
 
-    def forget_carriage(self) -> None:
-        """Take nothing for known of a carriage that people were driving as the rig was stopped."""
+    def forget_carriage(self) -> bool:
+        """Take the speed of a carriage that people drive for unknown; return whether it may run."""
         if self.carriage_speed_m_s:
             self.carriage_speed_m_s = math.nan
+        return self.carriage_speed_m_s != 0.0
 
     def fetch(self) -> Iterator[Demand]:
         """Yield what brings a carriage back that cannot go back by itself."""

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from hardware.rig import Rig
     from hardware.rig_configuration import RigConfiguration
     from hardware.serial_port import PortSettings
+    from hardware.watch import WatchLimits
     from pmm.devices.device_source import DeviceTables
 
 
@@ -132,8 +133,18 @@ def _option(text: str) -> tuple[str, int | float | str | bool]:
 
 
 @contextmanager
-def opened(configuration: "RigConfiguration", *, free_running: bool = False) -> "Iterator[Rig]":
+def opened(
+    configuration: "RigConfiguration",
+    *,
+    free_running: bool = False,
+    limits: "WatchLimits | None" = None,
+) -> "Iterator[Rig]":
     """Open a rig that keeps to the clock, without touching its devices yet.
+
+    Parameters
+    ----------
+    limits
+        Of shaft speed and loads, watched in every cycle; what turns the shaft has them.
 
     Raises
     ------
@@ -153,6 +164,8 @@ def opened(configuration: "RigConfiguration", *, free_running: bool = False) -> 
     period_s = 1.0 / configuration.sample_rate_hz
     pacer = FreeRunning() if free_running else RealTime(period_s, time.monotonic, time.sleep)
     with Rig(configuration, time.monotonic, pacer, _asking(absent=free_running)) as rig:
+        if limits is not None:
+            rig.limit(limits)
         yield rig
 
 

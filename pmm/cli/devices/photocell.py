@@ -35,17 +35,22 @@ def photocell(
     within_s: float,
     turn_hz: float | None,
 ) -> None:
-    """Test the photocell: pulses, intervals, missing and extra ones."""
+    """Test the photocell: pulses, intervals, missing and extra ones.
+
+    With --turn, loads and speed are watched as in a run, by the whole of the rig's file.
+    """
     from hardware.command_limits import check_speed
     from pmm.devices.axis_move import NOTHING_MOVED, look, turn
     from pmm.devices.device_source import DeviceTables
     from pmm.devices.photocell_test import watch
+    from pmm.plan.rig_file import read_rig_file
     from pmm.report.devices_document import photocell_document
 
+    limits = None if turn_hz is None else read_rig_file(rig).watched
     tables = DeviceTables(Path(rig))
     with (
         ExitStack() as stack,
-        opened(tables.configuration(), free_running=free_running) as opened_rig,
+        opened(tables.configuration(), free_running=free_running, limits=limits) as opened_rig,
     ):
         shaft = opened_rig.shaft
         if turn_hz is not None:

@@ -80,7 +80,10 @@ def tune(
 def _record(file: "RigFile", test: "SpeedTest", *, free_running: bool, yes: bool) -> "SpeedRecord":
     from pmm.devices.axis_move import look
 
-    with ExitStack() as stack, opened(file.hardware, free_running=free_running) as rig:
+    with (
+        ExitStack() as stack,
+        opened(file.hardware, free_running=free_running, limits=file.watched) as rig,
+    ):
         test.check(rig)
         confirm(
             f"the shaft will turn at {test.slow_hz:g} and {test.fast_hz:g} Hz at the smallest "

@@ -1,6 +1,7 @@
 """``pmm devices`` as typed: on the bus in process, over multicast, over slcan, on a port."""
 
 import json
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,13 @@ from pmm.cli import cli
 from sim.devices.terminal import PseudoTerminal
 from tests.sim.devices.benches import WHOLE, Hosted, amplifier, multicast_works, toml
 
+_VERTICAL = Path(__file__).parents[3] / "examples" / "vertical"
+_MOTOR = """
+[campaign.drive.motor]
+constant_n_m_a = 0.8
+gear_inertia_kg_m2 = 0.7
+loop = { proportional = 2.0, integral = 10.0 }
+"""
 PARTS = {**WHOLE, "forces": [amplifier(4, "force_aft", "force_fore")]}
 
 
@@ -31,6 +39,14 @@ def document(*words: str, status: int = 0) -> dict[str, Any]:
 def rig(tmp_path: Path) -> Path:
     """A rig on the bus in process, whose simulation lies beside its file."""
     return written(tmp_path, PARTS)
+
+
+@pytest.fixture
+def whole(tmp_path: Path) -> Path:
+    """The vertical example: a rig's whole file, with its simulation."""
+    for name in ("rig.toml", "simulated.toml"):
+        shutil.copy(_VERTICAL / name, tmp_path / name)
+    return tmp_path / "rig.toml"
 
 
 def written(folder: Path, parts: dict[str, Any], **more: Any) -> Path:
@@ -110,7 +126,7 @@ def test_an_axis_moves_when_it_is_confirmed_only(rig: Path) -> None:
         (("move", "eccentricity", "-1mm"), 1, "-0.001 m is outside 0 to 0.06 m"),
         (("move", "eccentricity", "20deg"), 2, "with or without a unit (m, mm)"),
         (("move", "shaft", "1"), 2, "the rig has eccentricity, phase"),
-        (("photocell", "--turn", "3"), 1, "3 Hz is outside 0 to 2 Hz"),
+        (("photocell", "--turn", "1"), 2, "rig.toml: oscillator is missing"),
         (("gauges", "--channel", "force_aff"), 2, "the rig has force_aft, force_fore"),
     ],
 )
@@ -120,15 +136,27 @@ def test_what_is_refused_is_named(rig: Path, words, status, said) -> None:
     assert said in result.stderr
 
 
-def test_the_photocell_command_turns_the_shaft_and_judges(rig: Path) -> None:
-    words = ("photocell", rig, "--turn", "1", "--yes", "--free-running")
-    found = document(*words)
+def test_the_photocell_command_turns_the_shaft_and_judges(rig: Path, whole: Path) -> None:
+    words = ("photocell", whole, "--yes", "--free-running", "--turn")
+    found = document(*words, "1")
     assert found["good"]
     assert [one["seconds"] for one in found["intervals"]] == pytest.approx([1.0] * 4, abs=0.01)
     assert [one["verdict"] for one in found["intervals"]] == [""] * 4
     nobody = devices("photocell", rig, "--within", "1", "--free-running")
     assert nobody.exit_code == 1
     assert "0 pulses in the time; check lamp, slot, cable and input" in nobody.stderr
+    refused = devices(*words, "3")
+    assert refused.exit_code == 1
+    assert "3 Hz is outside" in refused.stderr
+
+
+@pytest.mark.parametrize("job", [("photocell", "--turn", "1"), ("tune",)])
+def test_what_turns_the_shaft_watches_the_loads(whole: Path, job: tuple[str, ...]) -> None:
+    gauge = '\n[[gauges]]\nchannel = "force_aft"\nfull_scale_n = 0.04\nsafe_load_n = 0.05\n'
+    whole.write_text(whole.read_text(encoding="utf-8") + _MOTOR + gauge, encoding="utf-8")
+    stopped = devices(*job, whole, "--yes", "--free-running")
+    assert stopped.exit_code == 1
+    assert "is beyond its safe load, 0.05 N" in stopped.stderr
 
 
 def test_the_push_test_finds_gauges_swapped_in_the_rigs_file(rig: Path) -> None:

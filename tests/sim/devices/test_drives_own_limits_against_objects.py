@@ -1,5 +1,9 @@
 """What a drive has been told of its own limits when it starts, object by object."""
 
+import re
+from importlib.resources import files
+from typing import Any
+
 import pytest
 
 from hardware.description.errors import ConfigurationError
@@ -38,8 +42,8 @@ def world():
         yield made
 
 
-def opened(world) -> Rig:
-    configuration = read_rig(TABLES, DRIVERS)
+def opened(world, tables: dict[str, Any] = TABLES) -> Rig:
+    configuration = read_rig(tables, DRIVERS)
     return Rig(configuration, lambda: world.time_s, FreeRunning(), nobody)
 
 
@@ -59,6 +63,19 @@ def test_what_a_drive_lacks_is_named_and_the_rig_starts(world) -> None:
         assert len(rig.notes) == 2
         assert "shaft: the drive lacks object 605B:0, shutdown option" in rig.notes[0]
         assert "6080:0, max motor speed: the controller alone keeps it" in rig.notes[1]
+
+
+def test_a_drive_that_does_not_watch_its_controller_is_named(world, tmp_path) -> None:
+    """By an EDS without object 1016: three sections less."""
+    whole = (files("hardware") / "eds" / "cia402-drive.eds").read_text()
+    eds = tmp_path / "unwatched.eds"
+    lines = re.sub(r"(?ms)^\[1016(?:sub\d)?\]$.*?(?=^\[)", "", whole)
+    eds.write_text(lines)
+    tables = {**TABLES, "shaft": {**TABLES["shaft"], "eds": str(eds)}}
+    with opened(world, tables) as rig:
+        rig.prepare()
+        (note,) = rig.notes
+    assert note.startswith("shaft: the drive lacks object 1016:1, consumer heartbeat time: it goes")
 
 
 def test_a_drive_without_what_it_needs_is_refused(world) -> None:
