@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hardware.description.errors import ConfigurationError, DataError
+from hardware.description.errors import ConfigurationError
 from pmm.cli.screen import error_line, messages, pasted
 
 if TYPE_CHECKING:
@@ -57,16 +57,16 @@ def check_file(path: Path, option: str, *, overwrite: bool = True) -> None:
     Raises
     ------
     ConfigurationError
-        If it is a folder, its folder cannot be made or written to, or it is there and cannot be
-        written to.
-    DataError
-        If it is there and may not be replaced.
+        If it is a folder, its folder cannot be made or written to, or it is there and may not be
+        replaced or cannot be written to.
     """
     check_folder(path.parent, option)
     if path.is_dir():
         raise ConfigurationError(f"{option} {path}: a folder; name a file")
     if path.exists() and not overwrite:
-        raise DataError(f"{option} {path}: there already; choose another name, or --overwrite")
+        raise ConfigurationError(
+            f"{option} {path}: there already; choose another name, or --overwrite"
+        )
     if path.exists() and not os.access(path, os.W_OK):
         raise ConfigurationError(f"{option} {path}: cannot be written to")
 
@@ -88,7 +88,7 @@ def check_files(
 
     Raises
     ------
-    ConfigurationError, DataError
+    ConfigurationError
         As :func:`check_file`; or an option names a file that is read, or that another one names.
     """
     readers = {path.resolve(): name for name, path in inputs}

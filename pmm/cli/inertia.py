@@ -73,18 +73,17 @@ def _command(job: str) -> Callable[..., None]:
         from pmm.inertia.jobs import do_job
         from pmm.inertia.model_file import (
             check_ending,
-            check_output,
             mass_properties,
             model_section,
         )
         from pmm.report.inertia_document import document
         from pmm.whole_file import write_whole
 
-        for target in filter(None, (output, properties)):
-            check_output(Path(target), overwrite=overwrite)
+        files = {"--output": output, "--properties": properties}
+        check_files({"--page": page, **files}, [("FILE", Path(file))])
+        check_files(files, overwrite=overwrite)
         if properties is not None:
             check_ending(Path(properties))
-        check_files({"--page": page}, [("FILE", Path(file))])
         with busy(f"{job}: {file}"):
             outcome = do_job(job, file)
             fits = form_fits(outcome) if with_fits else None

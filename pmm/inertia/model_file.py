@@ -16,20 +16,6 @@ from pmm.inertia.outcome import Outcome
 ENDINGS = (".urdf", ".csv")
 
 
-def check_output(path: Path, *, overwrite: bool) -> None:
-    """Refuse a file that is there already, before any work is done.
-
-    Raises
-    ------
-    DataError
-        If it is there and may not be overwritten, or is a folder.
-    """
-    if path.is_dir():
-        raise DataError(f"{path}: a folder; name a file, such as {path / 'model.toml'}")
-    if path.exists() and not overwrite:
-        raise DataError(f"{path}: there already; choose another --output, or --overwrite")
-
-
 def model_section(outcome: Outcome) -> str:
     """Return the text of ``[model]`` and ``[model_uncertainty]``.
 

@@ -230,7 +230,7 @@ def test_a_section_is_never_overwritten_unasked(tmp_path: Path) -> None:
     model = "[model]\nmass_kg = 10.0\ncg_x_m = 0.0\ncg_z_m = 0.1\n"
     text = PENDULUM.replace("VALUE", "0.285") + model
     refused = inertia(tmp_path, "pendulum", text, "--output", str(target))
-    assert refused.exit_code == 1
+    assert refused.exit_code == 2
     assert "--overwrite" in refused.stderr
     assert target.read_text() == "mine\n"
     done = inertia(tmp_path, "pendulum", text, "--output", str(target), "--overwrite")

@@ -217,7 +217,7 @@ def test_parquet_reads_back(file: Path, tmp_path: Path) -> None:
     every = _found(file, "repeat = 1", "--channel", "force_aft")
     keys = ("run", "frequency_hz", "in_phase", "quadrature", "in_phase_half_width", "unit")
     assert [[one[k] for k in keys] for one in rows] == [[one[k] for k in keys] for one in every]
-    done = job("export", "--parquet", path, "--archive", file, status=1)
+    done = job("export", "--parquet", path, "--archive", file, status=2)
     assert "there already" in done.stderr
     job("export", "--parquet", path, "--coefficients", "--overwrite", "--archive", file)
     every = told("find", "coefficient != ''", "--coefficients", "--archive", file)["coefficients"]

@@ -53,7 +53,7 @@ def test_a_file_in_place_of_its_folder(asked: tuple[str | Path, ...], tmp_path: 
 def test_a_file_that_is_there_already(asked: tuple[str | Path, ...], tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     done = run(*asked, tmp_path / "file")
-    assert (done.exit_code, done.stdout) == (1, "")
+    assert (done.exit_code, done.stdout) == (2, "")
     assert f"{asked[-1]} {tmp_path / 'file'}: there already; " in done.stderr
 
 

@@ -137,5 +137,5 @@ def test_it_is_made_for_paper_too(page: tuple[Path, str]) -> None:
 
 def test_a_page_that_is_there_is_not_lost(page: tuple[Path, str]) -> None:
     result = CliRunner().invoke(cli, ["report", str(page[0])])
-    assert result.exit_code == 1
+    assert result.exit_code == 2
     assert "--overwrite" in result.stderr
