@@ -195,6 +195,11 @@ def cycle_of(deliverables: Deliverables, half_spacing_m: float = 0.5) -> BodyCyc
     ----------
     half_spacing_m
         A length that makes rotations comparable with translations; any of the model's size does.
+
+    Raises
+    ------
+    DataError
+        If one of force, moment, displacement, angle, velocity across and ``u`` is missing.
     """
     names = NAMES[deliverables.plane]
     force, moment, place, angle, across = names[:5]
@@ -202,6 +207,13 @@ def cycle_of(deliverables: Deliverables, half_spacing_m: float = 0.5) -> BodyCyc
                "moment": moment}  # fmt: skip
     if "X" in deliverables.mean:
         sources[SURGE_FORCE] = "X"
+    there = deliverables.mean.keys() | ({"u"} & deliverables.columns.keys())
+    missing = [name for name in (*names[:5], "u") if name not in there]
+    if missing:
+        raise DataError(
+            f"{deliverables.description.run}: {', '.join(missing)} is not among the deliverables; "
+            "a cycle needs loads, motion and the velocities through the water"
+        )
     orders = len(deliverables.sine[force])
     rows: dict[str, ComplexArray] = {
         channel: complex(-1.0 if channel in (*LOADS, SURGE_FORCE) else 1.0)

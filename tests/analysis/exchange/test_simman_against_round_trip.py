@@ -156,6 +156,15 @@ def test_spoiled_files_are_named(
         read_simman(folder)
 
 
+@pytest.mark.parametrize("name", ["u", "v"])
+def test_a_cycle_without_a_velocity_is_refused(tmp_path: Path, name: str) -> None:
+    folder = write_simman(deliverables_of(cycle(), ABOUT), tmp_path / "run")
+    (folder / "fourier.dat").unlink()
+    spoiled(folder, "cycle.dat", f" {name} ", f" {name}2 ")
+    with pytest.raises(DataError, match=f"yaw-1: {name} is not among the deliverables"):
+        cycle_of(read_simman(folder))
+
+
 def test_nothing_is_lost(tmp_path: Path) -> None:
     one = deliverables_of(cycle(), ABOUT)
     write_simman(one, tmp_path)
