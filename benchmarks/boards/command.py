@@ -11,6 +11,7 @@ from benchmarks.boards.rows import (
     RESULTS,
     SEALED,
     SEEDED_BY,
+    TRAINING,
     Job,
     Line,
     jobs_of,
@@ -98,9 +99,9 @@ def _parse(arguments: Sequence[str]) -> argparse.Namespace:
     parser.add_argument("--workers", type=int, default=1, metavar="N", help="processes")
     parser.add_argument(
         "--training",
-        default="training",
-        metavar="FOLDER",
-        help="campaigns that rows learn from, of python -m tests.sealed.learning campaigns",
+        default=str(RESULTS / TRAINING),
+        metavar="FILE",
+        help="campaigns that rows learn from, of python -m tests.sealed.learning keep",
     )
     parser.add_argument("--again", action="store_true", help="also what another commit measured")
     parser.add_argument("--output", type=Path, default=RESULTS, metavar="FOLDER")

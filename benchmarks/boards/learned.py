@@ -19,6 +19,7 @@ from benchmarks.boards.row_figures import row_means
 from benchmarks.boards.worlds import made
 from pmm.gap.answer import SCHEMA as ANSWER_SCHEMA
 from tests.sealed.answering import DIAGNOSIS
+from tests.sealed.learning.boosted import classifier
 from tests.sealed.learning.calibration import Conformal, Isotonic
 from tests.sealed.learning.campaigns import LOOKS
 from tests.sealed.learning.rows import boosted, with_shares
@@ -43,7 +44,7 @@ def answered(world: str, index: int, commit: str, size: int, training: Path) -> 
     index, commit, size
         As in :func:`benchmarks.boards.beside.compared`.
     training
-        Campaigns that ``python -m tests.sealed.learning campaigns`` made.
+        Campaigns that ``python -m tests.sealed.learning keep`` has written.
 
     Raises
     ------
@@ -69,8 +70,8 @@ def answered(world: str, index: int, commit: str, size: int, training: Path) -> 
         rows = dict(marks_by_row(folder, truth, ROWS))
     line = {"campaign": world, "seed": index, "frozen": commit, "rows": rows}
     line |= {"counts": BINS[-1].holds(truth), "verdict": truth.verdict}
-    trained = {"trained_on": len(list(training.glob("*.json")))}
-    return {**line, **trained, "cpu_s": round(time.process_time() - began, 2)}
+    line["trained_on"] = max(classifier(training, look).trained_on for look in LOOKS)
+    return {**line, "cpu_s": round(time.process_time() - began, 2)}
 
 
 @cache

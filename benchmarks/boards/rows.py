@@ -18,6 +18,7 @@ _SLICES: Final[Mapping[str, tuple[int, int]]] = {"mutations": (FOLDERS, 50), "co
 _WORLDS, _BESIDE, _LOOPS, _WEIGHINGS = "worlds", "beside", "loops", "weighings"
 _LEARNED: Final = "learned"
 SEALED: Final = (_WORLDS, _LOOPS)
+TRAINING: Final = "training.jsonl.xz"
 SEEDED_BY: Final = {_BESIDE: _WORLDS, _LEARNED: _WORLDS}  # the board whose cases these are
 BOARDS: Final = ("nulls", "friction", *_SLICES)
 EVERY: Final = (*BOARDS, *SEALED, *SEEDED_BY, _WEIGHINGS)
@@ -29,7 +30,7 @@ Line = dict[str, Any]
 class Job:
     """A case of a board, or a slice of mutated folders: seeds ``first`` to before ``stop``.
 
-    ``frozen`` is the commit whose hash is the seed of sealed cases; ``training`` is the folder of
+    ``frozen`` is the commit whose hash is the seed of sealed cases; ``training`` is the file of
     the campaigns that rows learn from.
     """
 

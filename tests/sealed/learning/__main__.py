@@ -5,13 +5,15 @@ from pathlib import Path
 
 import click
 
-from tests.sealed.learning.campaigns import LOOKS, made
+from tests.sealed.learning.campaigns import LOOKS, made, missing
+from tests.sealed.learning.training import examples, keep
 from tests.sealed.progress import told
 from tests.sealed.scoring.board import DIAGNOSIS
 from tests.sealed.steps import in_words
 
 FOLDER = click.Path(file_okay=False, path_type=Path)
 BOARD = click.Path(exists=True, file_okay=False, path_type=Path)
+PLACE = click.Path(exists=True, path_type=Path)
 LOOK = click.option("--look", default="components", show_default=True,
                     type=click.Choice(sorted(LOOKS)), help="What is learnt from.")  # fmt: skip
 
@@ -26,17 +28,28 @@ def main() -> None:
 @click.option("--count", default=2000, show_default=True, type=click.IntRange(1))
 @click.option("--workers", default=os.cpu_count() or 1, show_default="one per core",
               type=click.IntRange(1))  # fmt: skip
-def campaigns_command(output: Path, count: int, workers: int) -> None:
+@click.option("--kept", type=PLACE, help="Those in this file are not made again.")
+def campaigns_command(output: Path, count: int, workers: int, kept: Path | None) -> None:
     """Make training campaigns of worlds A and B; those that are there are kept."""
-    jobs = count - len(list(output.glob("*.json")))
-    for line in told("campaigns made", jobs, made(output, count, workers)):
+    there = () if kept is None else [one.index for one in examples(kept)]
+    jobs = missing(output, count, there)
+    for line in told("campaigns made", len(jobs), made(jobs, workers)):
         if not line.endswith(".json"):
             click.echo(line, err=True)
 
 
+@main.command("keep")
+@click.argument("places", nargs=-1, required=True, type=PLACE)
+@click.option("--output", required=True, type=click.Path(dir_okay=False, path_type=Path))
+def keep_command(places: tuple[Path, ...], output: Path) -> None:
+    """Keep the features of campaigns in PLACES, folders or kept files, as one file."""
+    click.echo(f"{output}: {keep(places, output)} campaigns")
+
+
 @main.command("boost")
 @click.argument("board", type=BOARD)
-@click.option("--campaigns", required=True, type=BOARD, help="Training campaigns.")
+@click.option("--campaigns", required=True, type=PLACE,
+              help="Training campaigns: their folder, or the file they are kept in.")  # fmt: skip
 @LOOK
 def boost_command(board: Path, campaigns: Path, look: str) -> None:
     """Answer BOARD by gradient boosting on training campaigns: the row boosted-LOOK."""

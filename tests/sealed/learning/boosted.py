@@ -1,7 +1,7 @@
 """An amortised classifier: gradient boosting on features of campaigns, as a row of a board."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
@@ -12,17 +12,14 @@ import numpy as np
 
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
-from tests.sealed.learning.campaigns import LOOKS, Example, Numbers, examples
-from tests.sealed.learning.features import as_matrix, of_components, of_hypotheses
+from tests.sealed.learning.campaigns import LOOKS
+from tests.sealed.learning.features import as_matrix
+from tests.sealed.learning.training import FEATURES, Example, examples
 from tests.sealed.peers.scene import scene
 from tests.sealed.peers.sheet import NONE, sheet, stages_of
 
 NEEDS: Final = "sklearn"
 SEED: Final = 26
-FEATURES: Final[Mapping[str, Callable[[Numbers], dict[str, float]]]] = {
-    "components": of_components,
-    "hypotheses": of_hypotheses,
-}
 ROUNDS, LEAVES, RATE, LEAST = 60, 6, 0.1, 3
 """Trees of each answer, leaves of a tree, learning rate, and least examples of a leaf."""
 
@@ -60,21 +57,21 @@ class Classifier:
             raise DataError(
                 f"{len(found)} campaigns: make more (python -m tests.sealed.learning campaigns)"
             )
-        rows = [FEATURES[look](one.numbers) for one in found]
+        rows = [one.features[look] for one in found]
         names = tuple(sorted({name for row in rows for name in row}))
         matrix = as_matrix(rows, names)
         answers = _boosted(matrix, [one.right for one in found])
         stages = _boosted(matrix, [one.stages or (NONE,) for one in found])
         return cls(look, names, answers, stages, len(found))
 
-    def shares(self, numbers: Numbers) -> tuple[dict[str, float], dict[str, float]]:
+    def shares(self, features: Mapping[str, float]) -> tuple[dict[str, float], dict[str, float]]:
         """Return how probable each answer and each stage is."""
-        row = as_matrix([FEATURES[self.look](numbers)], self.names)
+        row = as_matrix([features], self.names)
         return _by_name(self.answers, row), _by_name(self.stages, row)
 
     def answer(self, case: Path) -> dict[str, Any]:
         """Return the answer to a case's folder; nothing is foretold to shrink."""
-        shares, stages = self.shares(LOOKS[self.look](case))
+        shares, stages = self.shares(FEATURES[self.look](LOOKS[self.look](case)))
         stages.pop(NONE, None)
         certain = math.fsum(stages.values()) > 0.0
         return sheet(case.name, shares, stages if certain else stages_of(shares),
@@ -83,8 +80,8 @@ class Classifier:
 
 @cache
 def classifier(campaigns: Path, look: str) -> Classifier:
-    """Return the classifier fitted to all campaigns of a folder; once in a process."""
-    return Classifier.fitted(examples(campaigns, look), look)
+    """Return the classifier fitted to all campaigns of a place; once in a process."""
+    return Classifier.fitted(examples(campaigns), look)
 
 
 def _boosted(matrix: FloatArray, right: Sequence[tuple[str, ...]]) -> Any:

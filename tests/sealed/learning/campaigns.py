@@ -5,7 +5,7 @@ of numbers stays of it. A folder that was broken off, or is asked for more, goes
 """
 
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -42,24 +42,6 @@ class Asked:
         return self.folder / f"{self.index:05d}.json"
 
 
-@dataclass(frozen=True)
-class Example:
-    """A campaign that was made.
-
-    Attributes
-    ----------
-    right
-        The key's first right answer, or its verdict where no name is right.
-    stages
-        The key's right stages.
-    """
-
-    index: int
-    right: tuple[str, ...]
-    stages: tuple[str, ...]
-    numbers: Numbers
-
-
 def make_one(asked: Asked) -> str:
     """Make a campaign and keep what each look says of it; return its file's name."""
     from tests.sealed.generator.case import make
@@ -79,23 +61,18 @@ def make_one(asked: Asked) -> str:
     return asked.target.name
 
 
-def made(folder: Path, count: int, workers: int) -> Iterator[str]:
-    """Make what is missing of the first ``count`` campaigns; yield a line on each.
+def missing(folder: Path, count: int, kept: Collection[int] = ()) -> list[Asked]:
+    """Return what is not there of the first ``count`` campaigns, nor kept elsewhere."""
+    jobs = [Asked(folder.absolute(), index) for index in range(1, count + 1)]
+    return [one for one in jobs if one.index not in kept and not one.target.exists()]
+
+
+def made(missing: Sequence[Asked], workers: int) -> Iterator[str]:
+    """Make campaigns; yield a line on each.
 
     A campaign that fails is named and left out; it is tried again when called again.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    jobs = [Asked(folder.absolute(), index) for index in range(1, count + 1)]
-    missing = [one for one in jobs if not one.target.exists()]
+    for one in missing:
+        one.folder.mkdir(parents=True, exist_ok=True)
     for done in each(make_one, missing, workers, _LIMIT_S if workers > 1 else None):
         yield done.value or f"campaign {done.job.index}: {done.failed}"
-
-
-def examples(folder: Path, look: str) -> list[Example]:
-    """Return the campaigns that were made, in their order, as one look has them."""
-    found = []
-    for path in sorted(folder.glob("*.json")):
-        kept = json.loads(path.read_text())
-        right, stages = tuple(kept["right"]), tuple(kept["stages"])
-        found.append(Example(kept["index"], right, stages, kept["numbers"][look]))
-    return found

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from tests.sealed.learning.boosted import Classifier, importance
-from tests.sealed.learning.campaigns import Example
+from tests.sealed.learning.features import of_components
+from tests.sealed.learning.training import Example
 
 pytest.importorskip("sklearn", reason="optional dependency peers")
 
@@ -18,7 +19,9 @@ def _example(rng: np.random.Generator, index: int) -> Example:
     off[::2] += 20.0 * (index % 2)
     numbers = {"cell": CELLS * 2, "run": [0, 0, 1, 1], "off": off.tolist(), "settings": SETTINGS}
     name, stage = ("zero-offset", "dynamometers") if index % 2 else ("none", "")
-    return Example(index, (name,), (stage,) if stage else (), numbers)
+    return Example(
+        index, (name,), (stage,) if stage else (), {"components": of_components(numbers)}
+    )
 
 
 @pytest.mark.slow
@@ -28,7 +31,7 @@ def test_what_is_plain_is_named_with_its_stage() -> None:
     model = Classifier.fitted([_example(rng, at) for at in range(60)], "components")
     for index in (100, 101):
         asked = _example(rng, index)
-        shares, stages = model.shares(asked.numbers)
+        shares, stages = model.shares(asked.features["components"])
         assert shares[asked.right[0]] > 0.9
         assert stages[(asked.stages or ("none",))[0]] > 0.9
 
