@@ -190,6 +190,9 @@ def _by_stated(
     }
     if asked:
         moves["latency_s"] = {_AFT: later * shaped[:, _AFT], _FORE: later * shaped[:, _FORE]}
+    surge = 4
+    if channels - len(roll) > surge:
+        moves["surge_gauge_relative"] = {surge: shaped[:, surge]}
     if ROLL_MOMENT in roll:
         place = channels - len(roll) + roll.index(ROLL_MOMENT)
         moves["roll_gauge_relative"] = {place: shaped[:, place]}

@@ -18,12 +18,11 @@ from analysis.coefficients.stated_uncertainties import STATED
 from analysis.coefficients.tare import Tare
 from analysis.ideal_rig import mass_matrix, weight_matrix
 from analysis.kinematics.body_frame import CHANNELS, HEELED, ROLL_MOMENT
-from analysis.kinematics.body_frame import LOADS as LOAD_CHANNELS
 from hardware.description.arrangement import Arrangement
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.body import Body
 from hardware.description.errors import ConfigurationError
-from hardware.description.flags import Flag, Severity
+from hardware.description.flags import Flag
 from hardware.description.heel import Heel
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium
@@ -31,9 +30,8 @@ from hardware.description.setpoint import Medium
 MOTIONS = ("translation", "rotation")
 LOADS = ("force", "moment")
 SURGE_FORCE = CHANNELS[-1]
+DRY_TAKEN_OFF = "dry_run_taken_off"  # flag of a run whose loads are less those in air
 
-_SAME_FREQUENCY = 5e-3
-_SAME_MOTION = 1e-2
 _STEPS = 720  # of a base period, in which the peak of many lines is sought
 
 
@@ -221,7 +219,7 @@ class BodyCycle:
         ConfigurationError
             If a dry run was taken off already, which holds the inertia.
         """
-        if body is not None and any(flag.code == "dry_run_taken_off" for flag in self.flags):
+        if body is not None and any(flag.code == DRY_TAKEN_OFF for flag in self.flags):
             raise ConfigurationError(
                 f"{self.name}: a dry run was taken off; the body's inertia must not be, again"
             )
@@ -231,65 +229,9 @@ class BodyCycle:
             restoring=self.restoring if restoring is None else np.asarray(restoring),
         )
 
-    def without_dry(self, dry: "BodyCycle") -> "BodyCycle":
-        """Return the cycle less the loads of a run in still air with the same motion.
-
-        They are scaled by the ratio of the motions, and each harmonic is turned by its own multiple
-        of the angle between the two; the means stay, because zero runs are what they are taken
-        from.
-
-        Raises
-        ------
-        ConfigurationError
-            If the dry run is not one: in water, another frequency or motion.
-        """
-        self._check_dry(dry)
-        wet_motion, motion = self.at_struts, dry.at_struts
-        ratio = np.vdot(motion, wet_motion) / np.vdot(motion, motion)
-        deviation = np.abs(wet_motion - ratio * motion).max() / np.abs(wet_motion).max()
-        if deviation > _SAME_MOTION or abs(abs(ratio) - 1.0) > 0.1:
-            raise ConfigurationError(
-                f"{self.name}: dry run {dry.name} moved {abs(ratio):.3g} times as far with "
-                f"{100 * deviation:.2g} % in another motion (limits 0.9 to 1.1 and "
-                f"{100 * _SAME_MOTION:g} %); run it with the same set-point"
-            )
-        scale = np.zeros((len(self.phasors.names), len(dry.phasors.names)), dtype=np.complex128)
-        readings, gauges = self.readings.copy(), slice(2, dry.readings.shape[1])
-        for n in range(1, min(self.orders, dry.orders) + 1):
-            turn = abs(ratio) * np.exp(1j * n * np.angle(ratio))
-            if len(readings) and len(dry.readings):
-                readings[n, gauges] -= turn * dry.readings[n, gauges]
-            for name in (
-                channel
-                for channel in LOAD_CHANNELS
-                if channel in self.channels and channel in dry.channels
-            ):
-                place = self.phasors.index(at_order(name, n))
-                scale[place, dry.phasors.index(at_order(name, n))] = turn
-        taken = dry.phasors.mapped(scale, self.phasors.names, self.phasors.units)
-        text = f"the loads of dry run {dry.name} were taken off"
-        flag = Flag("dry_run_taken_off", Severity.NOTE, text)
-        phasors, flags = self.phasors.minus(taken), (*self.flags, flag)
-        return replace(self, phasors=phasors, readings=readings, flags=flags)
-
-    def _check_dry(self, dry: "BodyCycle") -> None:
-        faults = []
-        if dry.medium is not Medium.AIR:
-            faults.append("it was run in water")
-        if self.body is not None or dry.body is not None:
-            faults.append("the body's inertia is taken off as well")
-        if dry.plane is not self.plane:
-            faults.append("its plane is another")
-        if abs(dry.frequency_hz / self.frequency_hz - 1.0) > _SAME_FREQUENCY:
-            faults.append(f"it ran at {dry.frequency_hz:g} Hz, not {self.frequency_hz:g} Hz")
-        if faults:
-            raise ConfigurationError(
-                f"{self.name}: {dry.name} cannot be its dry run: {'; '.join(faults)}"
-            )
-
     def about(self, ahead_m: float) -> "BodyCycle":
         """Return the cycle with its coefficients wanted about a point ahead of the midpoint."""
         return replace(self, point_ahead_m=ahead_m)
 
 
-__all__ = ["LOADS", "MOTIONS", "SURGE_FORCE", "BodyCycle", "at_order", "labels"]
+__all__ = ["DRY_TAKEN_OFF", "LOADS", "MOTIONS", "SURGE_FORCE", "BodyCycle", "at_order", "labels"]

@@ -41,6 +41,7 @@ _WORDS = {
     "alignment_rad": "alignment, heading",
     "density_relative": "density",
     "heel_rad": "heel",
+    "surge_gauge_relative": "calibration, surge gauge",
     "roll_gauge_relative": "calibration, roll gauge",
     "turn_rate_relative": "rate of turn on the circle",
     "turn_radius_m": "radius of the circle",

@@ -1,12 +1,13 @@
 """Which runs of a campaign are solved together, and what is refused before anything is solved."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
+from statistics import median_low
 from typing import Final
 
-from analysis.coefficients.body_cycle import BodyCycle
+from analysis.coefficients.body_cycle import DRY_TAKEN_OFF, BodyCycle
 from analysis.coefficients.cycle_checks import named_twice, other_geometry
 from analysis.coefficients.identifiability import fundamental_velocities, identifiable_motions
 from analysis.coefficients.line_cycles import names_of_lines
@@ -60,10 +61,20 @@ class GroupKind(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """Runs of one speed or frequency that are solved together."""
+    """Runs of one speed or frequency that are solved together.
+
+    Attributes
+    ----------
+    speed_m_s
+        The median of all runs that count as one speed: what they tell stands at that.
+    frequency_hz
+        The same of the frequency; 0 of static runs, NaN where several are solved together.
+    """
 
     kind: GroupKind
     cycles: tuple[BodyCycle, ...]
+    speed_m_s: float
+    frequency_hz: float
 
 
 def check_campaign(cycles: Sequence[BodyCycle]) -> None:
@@ -106,7 +117,7 @@ def _other_bodies(cycles: Sequence[BodyCycle]) -> Iterator[str]:
 
 
 def _missing_data(cycle: BodyCycle) -> Iterator[str]:
-    dry = any(flag.code == "dry_run_taken_off" for flag in cycle.flags)
+    dry = any(flag.code == DRY_TAKEN_OFF for flag in cycle.flags)
     if cycle.medium is Medium.AIR:
         yield f"{cycle.name} was run in air; take it off as a dry run, or leave it out"
     elif cycle.body is None and cycle.turn_rate_rad_s:
@@ -143,40 +154,32 @@ def plan(
         Runs of many lines.
     """
     groups = []
-    for speed in _classes([cycle.speed_m_s for cycle in cycles], _SAME_SPEED, 0.01):
-        speed_cycles = [
-            cycle for cycle in cycles if _is_near(cycle.speed_m_s, speed, _SAME_SPEED, 0.01)
-        ]
-        static = [cycle for cycle in speed_cycles if cycle.frequency_hz == 0.0]
+    every = [*cycles, *(run for run in line_runs if request.nonlinear)]
+    for alike, speed in _classes(every, lambda run: run.speed_m_s, _SAME_SPEED, 0.01):
+        lined = [run for run in alike if run.lines]
+        single = [run for run in alike if not run.lines]
+        static = [cycle for cycle in single if cycle.frequency_hz == 0.0]
         if static:
-            groups.append(Group(GroupKind.STATIC, tuple(static)))
-        moving = [cycle for cycle in speed_cycles if cycle.frequency_hz > 0.0]
-        for frequency in _classes([c.frequency_hz for c in moving], _SAME_FREQUENCY, 0.0):
-            frequency_cycles = [
-                c for c in moving if _is_near(c.frequency_hz, frequency, _SAME_FREQUENCY, 0.0)
+            groups.append(Group(GroupKind.STATIC, tuple(static), speed, 0.0))
+        moving = [cycle for cycle in single if cycle.frequency_hz > 0.0]
+        for together, hz in _classes(moving, lambda run: run.frequency_hz, _SAME_FREQUENCY):
+            groups += [
+                Group(kind, runs, speed, hz) for kind, runs in _by_amplitude(together, request)
             ]
-            groups += _by_amplitude(frequency_cycles, request)
-        lined = [run for run in line_runs if _is_near(run.speed_m_s, speed, _SAME_SPEED, 0.01)]
-        if lined and request.nonlinear:
+        if lined:
             lines = {name for run in lined for name in names_of_lines(run)}
             sines = [
                 cycle for cycle in moving if cycle.name not in lines and not set_heel_of(cycle)
             ]
-            groups.append(Group(GroupKind.NONLINEAR, (*lined, *sines)))
+            groups.append(Group(GroupKind.NONLINEAR, (*lined, *sines), speed, math.nan))
     return tuple(groups)
 
 
-def _by_amplitude(cycles: Sequence[BodyCycle], request: Request) -> list[Group]:
+def _by_amplitude(
+    cycles: Sequence[BodyCycle], request: Request
+) -> list[tuple[GroupKind, tuple[BodyCycle, ...]]]:
     straight = [cycle for cycle in cycles if cycle.drift_rad == 0.0 and not set_heel_of(cycle)]
-    sizes = _classes([strut_amplitude(cycle) for cycle in straight], _SAME_AMPLITUDE, 0.0)
-    classes = [
-        tuple(
-            cycle
-            for cycle in straight
-            if _is_near(strut_amplitude(cycle), size, _SAME_AMPLITUDE, 0.0)
-        )
-        for size in sizes
-    ]
+    classes = [group for group, _ in _classes(straight, strut_amplitude, _SAME_AMPLITUDE)]
     columns = [_determined_motions(group, request.form) for group in classes]
     amplitude_groups = [group for group, motions in zip(classes, columns, strict=True) if motions]
     if (
@@ -185,10 +188,10 @@ def _by_amplitude(cycles: Sequence[BodyCycle], request: Request) -> list[Group]:
         and () in columns
     ):
         amplitude_groups.append(tuple(straight))
-    groups = [Group(GroupKind.LINEAR, group) for group in amplitude_groups]
+    groups = [(GroupKind.LINEAR, group) for group in amplitude_groups]
     mixed = len(classes) > 1 or len(straight) < len(cycles)
     if request.nonlinear and mixed:
-        groups.append(Group(GroupKind.NONLINEAR, tuple(cycles)))
+        groups.append((GroupKind.NONLINEAR, tuple(cycles)))
     return groups
 
 
@@ -209,14 +212,22 @@ def strut_amplitude(cycle: BodyCycle) -> float:
     return float(max(abs(way + arm), abs(way - arm)))
 
 
-def _is_near(value: float, centre: float, relative: float, least: float) -> bool:
-    return abs(value - centre) <= relative * max(abs(centre), least)
-
-
-def _classes(values: Sequence[float], relative: float, least: float) -> list[float]:
-    """Return one value of each cluster, in rising order."""
-    centres: list[float] = []
-    for value in sorted(values):
-        if not centres or not _is_near(value, centres[-1], relative, least):
-            centres.append(value)
-    return centres
+def _classes(
+    cycles: Sequence[BodyCycle],
+    value_of: Callable[[BodyCycle], float],
+    relative: float,
+    least: float = 0.0,
+) -> list[tuple[tuple[BodyCycle, ...], float]]:
+    """Return the runs whose values are alike, each run once, with the median value; rising."""
+    values = [value_of(cycle) for cycle in cycles]
+    groups: list[list[int]] = []
+    for at in sorted(range(len(cycles)), key=values.__getitem__):
+        lowest = values[groups[-1][0]] if groups else math.nan
+        if abs(values[at] - lowest) <= relative * max(abs(lowest), least):
+            groups[-1].append(at)
+        else:
+            groups.append([at])
+    return [
+        (tuple(cycles[at] for at in sorted(group)), median_low(values[at] for at in group))
+        for group in groups
+    ]

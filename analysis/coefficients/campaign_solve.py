@@ -51,10 +51,14 @@ class GroupCoefficients:
 def solve_group(group: Group, request: Request) -> GroupCoefficients:
     """Return what one group determines; what it cannot tell is named, not raised."""
     if group.kind is GroupKind.LINEAR:
-        return _linear(group.cycles, request)
-    if group.kind is GroupKind.STATIC:
-        return _fits_block(static_fits(group.cycles, request), group.cycles, request)
-    return _fits_block(nonlinear_fits(group.cycles, request), group.cycles, request)
+        block = _linear(group.cycles, request)
+    else:
+        fits_of = static_fits if group.kind is GroupKind.STATIC else nonlinear_fits
+        block = _fits_block(fits_of(group.cycles, request), group.cycles, request)
+    entries = [replace(one, speed_m_s=group.speed_m_s) for one in block.entries]
+    if not math.isnan(group.frequency_hz):
+        entries = [replace(one, frequency_hz=group.frequency_hz) for one in entries]
+    return replace(block, entries=tuple(entries))
 
 
 def _linear(cycles: Sequence[BodyCycle], request: Request) -> GroupCoefficients:

@@ -38,8 +38,11 @@ def dry_checks(
     stated
         With the uncertainties of the model itself.
     """
+    moving = [run for run in dry if run.frequency_hz]
+    if not moving:
+        return ()
     try:
-        found = linear_fit(dry, Form.SEAKEEPING, stated)
+        found = linear_fit(moving, Form.SEAKEEPING, stated)
     except DataError:  # one motion with a mixture of both, or none that moves
         return ()
     inertial = [k for k, place in enumerate(found.places) if place.inertial]

@@ -101,6 +101,7 @@ def on_hull(
     across, of_turn = 2 * channels.index("across"), by_turn(plane, point_ahead_m, turn_rate_rad_s)
     changes[across] += of_turn
     sensitivity[across, STATED.index("turn_rate_relative")] += of_turn
+    sensitivity[across, STATED.index("midpoint_x_m")] -= by_turn(plane, 1.0, turn_rate_rad_s)
     return HullCycle(
         Phasors(
             labels(channels, orders),

@@ -13,13 +13,14 @@ import numpy as np
 
 from analysis.coefficients.body_cycle import LOADS, BodyCycle, at_order
 from analysis.coefficients.campaign_records import Outlier
-from analysis.coefficients.phasors import Phasors, parts_of
+from analysis.coefficients.phasors import Phasors, from_interleaved, parts_of
 from analysis.uncertainty.freedom import effective_freedom, student_factor
 from analysis.uncertainty.values import Contribution, UncertainValues
 from hardware.description.arrays import ComplexArray, FloatArray
 
 _SAME_FREQUENCY = 5e-3
 _SAME_MOTION = 2e-2
+_SAME_ANGLE_RAD = 1e-3
 _CHANCE = 0.01  # that any run of a good campaign is named
 
 
@@ -171,8 +172,9 @@ def _is_same_motion(first: BodyCycle, second: BodyCycle) -> bool:
         return False
     if abs(second.speed_m_s - first.speed_m_s) > 1e-2 * max(abs(first.speed_m_s), 0.01):
         return False
-    if abs(second.drift_rad - first.drift_rad) > 1e-3:
-        return False
+    for angle in ("drift_rad", "heel_rad", "rudder_rad"):
+        if abs(getattr(second, angle) - getattr(first, angle)) > _SAME_ANGLE_RAD:
+            return False
     ratio = _ratio(first, second)
     deviation = np.abs(second.at_struts - ratio * first.at_struts).max()
     same_size = abs(abs(ratio) - 1.0) < _SAME_MOTION
@@ -185,11 +187,16 @@ def _size(cycle: BodyCycle) -> FloatArray:
 
 
 def _kind(cycles: Sequence[BodyCycle]) -> RepeatedMotion:
-    loads = np.stack([cycle.loads / _ratio(cycles[0], cycle) for cycle in cycles])
-    loads_of_cycles = [_loads(cycle.phasors) for cycle in cycles]
-    variance = np.maximum(
-        _variance(loads_of_cycles), _variance([_loads(cycle.hull.phasors) for cycle in cycles])
+    # Of the water: a body that was taken off makes no run another one.
+    of_water = [_loads(cycle.hull.phasors) for cycle in cycles]
+    loads = np.stack(
+        [
+            from_interleaved(own.values) / _ratio(cycles[0], cycle)
+            for own, cycle in zip(of_water, cycles, strict=True)
+        ]
     )
+    loads_of_cycles = [_loads(cycle.phasors) for cycle in cycles]
+    variance = np.maximum(_variance(loads_of_cycles), _variance(of_water))
     freedoms = np.stack(
         [
             cycle_loads.degrees_of_freedom.reshape(2, 2).min(axis=1)

@@ -46,8 +46,8 @@ class StatedUncertainties:
         by it.
     heel_rad
         Of the heel as it was set, or as the inclinometer's zero has it.
-    roll_gauge_relative
-        Of the roll gauge's own gain.
+    surge_gauge_relative, roll_gauge_relative
+        Of the own gain of the surge gauge and of the roll gauge.
     turn_rate_relative, turn_radius_m
         Of the rate and the radius of runs on a circle. Where no speed was recorded the speed of
         these is the one times the other, and ``speed_m_s`` does not act on it.
@@ -77,6 +77,7 @@ class StatedUncertainties:
     alignment_rad: float = 0.0
     density_relative: float = 0.0
     heel_rad: float = 0.0
+    surge_gauge_relative: float = 0.0
     roll_gauge_relative: float = 0.0
     turn_rate_relative: float = 0.0
     turn_radius_m: float = 0.0

@@ -127,10 +127,14 @@ def turn_cycle(turn: SteadyTurn, half_spacing_m: float, body: Body) -> BodyCycle
         mean_known=True,
         turn_rate_rad_s=turn.turn_rate_rad_s,
     )
-    by_speed = np.zeros((len(phasors.values), 2, len(STATED)))
-    for name, share in (("ahead", math.cos(turn.drift_rad)), ("across", -math.sin(turn.drift_rad))):
-        by_speed[channels.index(name), 0, STATED.index("speed_m_s")] = share
-    return by_radius(replace(cycle, sensitivity=by_speed.reshape(-1, len(STATED))))
+    sensitivity = np.zeros((len(phasors.values), 2, len(STATED)))
+    for name, key, slope in (
+        ("ahead", "speed_m_s", math.cos(turn.drift_rad)),
+        ("across", "speed_m_s", -math.sin(turn.drift_rad)),
+        ("moment", "midpoint_x_m", turn.force_n),
+    ):
+        sensitivity[channels.index(name), 0, STATED.index(key)] = slope
+    return by_radius(replace(cycle, sensitivity=sensitivity.reshape(-1, len(STATED))))
 
 
 def by_radius(cycle: BodyCycle) -> BodyCycle:

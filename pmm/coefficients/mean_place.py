@@ -25,13 +25,12 @@ def place_flags(struts: StrutCycle) -> Iterator[Flag]:
     if drift and offset and abs(turned - drift) < _ALIKE * drift:
         message = (
             f"{shown}, and drift_deg is {math.degrees(drift):.3g}: with drift_by = "
-            '"struts_offset" both are counted; take the offset out of the displacements, or leave '
-            "drift_deg out"
+            '"struts_offset" both are counted; take the offset out of the displacements'
         )
         yield Flag("drift_twice", Severity.WARNING, message)
     elif not drift and turned > _TURNED_RAD:
         message = (
-            f"{shown}: the model is taken to be turned by that; if it is the sensors' zero, take "
-            "it out of the recordings"
+            f"{shown}: the model is taken to be turned by that; take it out of the recordings, and "
+            "state it as drift_deg unless it is the sensors' zero"
         )
         yield Flag("turned_on_average", Severity.NOTE, message)

@@ -213,6 +213,8 @@ def _towed(task: Task, recording: Recording) -> ReadRecording:
     if task.kind is RunKind.CIRCLE:
         turn = turn_of(cycle, *spread)
         cycle = cycle if CARRIAGE_SPEED.name in recording.channel_names else by_radius(cycle)
+    else:
+        flags = (*flags, *_speed_flags(task, recording))
     result = _read_recording(task, recording, cycle, None, 0, (*flags, *attitude_flags))
     return replace(result, attitude=attitude, turn=turn)
 

@@ -9,7 +9,7 @@ from analysis.coefficients.stated_uncertainties import STATED, StatedUncertainti
 from analysis.coefficients.steady_turns import SteadyTurn, of_turns
 from analysis.response.following import Following
 from hardware.description.arrays import FloatArray
-from hardware.description.channels import FORCES
+from hardware.description.channels import FORCE_X, FORCES
 from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Oscillator
 from pmm.campaign.calibration import Calibration, read_calibration
@@ -26,6 +26,7 @@ _GAUGES = {
     (FORCES[0], FORCES[1]): "cross_talk_aft",
     (FORCES[1], FORCES[0]): "cross_talk_fore",
     (FORCES[1], FORCES[1]): "gauge_fore_relative",
+    (FORCE_X.name, FORCE_X.name): "surge_gauge_relative",
 }
 
 
@@ -170,15 +171,12 @@ def of_following(runs: Sequence[Sequence[Following]]) -> StatedUncertainties:
 
 
 def of_gauges(calibration: Calibration) -> StatedUncertainties:
-    """Return what a calibration leaves open, of the struts' gauges that it was made of."""
-    rows = {
-        name: calibration.channels.index(name) for name in FORCES if name in calibration.channels
-    }
-    spread = calibration.force_uncertainty
+    """Return what a calibration leaves open, of the gauges that it was made of."""
+    spread, channels = calibration.force_uncertainty, calibration.channels
     return StatedUncertainties(
         **{
-            _GAUGES[force, loaded]: float(spread[i, j])
-            for force, i in rows.items()
-            for loaded, j in rows.items()
+            key: float(spread[channels.index(force), channels.index(loaded)])
+            for (force, loaded), key in _GAUGES.items()
+            if force in channels and loaded in channels
         }
     )

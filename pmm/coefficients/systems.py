@@ -1,5 +1,6 @@
 """The system without dimensions that a table is asked for in, by the model's own dimensions."""
 
+from dataclasses import replace
 from typing import NoReturn
 
 from analysis.coefficients.campaign_result import CampaignCoefficients
@@ -40,12 +41,14 @@ def in_system(
         return coefficients, ()
     by_speed, flags = system_of(system, ship, body), _assumed(ship)
     if system in BY_GRAVITY:
-        return without_dimensions(coefficients, by_speed, stated), flags
+        # rho V is the model's mass where no volume is stated, whatever the density.
+        known = stated if ship.volume_m3 is not None else replace(stated, density_relative=0.0)
+        return without_dimensions(coefficients, by_speed, known), flags
     moving = [k for k, entry in enumerate(coefficients.entries) if entry.speed_m_s > 0.0]
     if not moving:
         raise ConfigurationError(
-            f"--system {system} divides by the speed, and nothing was measured at speed; take "
-            "--system seakeeping or dimensional"
+            f"--system {system} divides by the speed, and nothing was measured at a speed above 0 "
+            "m/s; take --system seakeeping or dimensional"
         )
     rest_count = len(coefficients.entries) - len(moving)
     if rest_count:

@@ -9,6 +9,7 @@ import numpy as np
 
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign_plan import OWN_MODEL
+from analysis.coefficients.dry_run import without_dry as less_dry_run
 from analysis.ideal_rig import weight_matrix
 from hardware.description.arrays import FloatArray
 from hardware.description.body import Body
@@ -99,14 +100,14 @@ def without_dry(cycle: BodyCycle, dry: Sequence[BodyCycle], campaign: Campaign) 
     model = campaign.as_recorded(cycle.name).model
     for dry_run in (run for run in dry if campaign.as_recorded(run.name).model == model):
         try:
-            return cycle.without_dry(dry_run)
+            return less_dry_run(cycle, dry_run)
         except ConfigurationError as error:
             refusals.append(str(error))
     amplitude = abs(cycle.motion)
     raise ConfigurationError(
         f"{cycle.name}: no dry run has its motion; run it in air at {cycle.frequency_hz:g} Hz with "
         f"{1e3 * amplitude[0]:.3g} mm and {amplitude[1]:.3g} rad, or give the inertia"
-        + (f" ({refusals[0]})" if len(refusals) == 1 else "")
+        + (f" ({min(refusals, key=len)})" if refusals else "")
     )
 
 

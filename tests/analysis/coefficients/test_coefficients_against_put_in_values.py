@@ -11,6 +11,7 @@ import pytest
 
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.cycle_fit import CycleFit
+from analysis.coefficients.dry_run import without_dry
 from analysis.coefficients.linear_fit import linear_fit
 from analysis.coefficients.names import Form
 from analysis.coefficients.normalisation import prime
@@ -123,7 +124,7 @@ def test_a_dry_run_takes_the_place_of_the_body(rig: SimulatedRig) -> None:
         for k, p in enumerate(pure(0.8, SMALL_M))
     ]
     runs = [
-        one.without_dry(air).without(restoring=np.array(rig.water.restoring))
+        without_dry(one, air).without(restoring=np.array(rig.water.restoring))
         for one, air in zip(wet, dry, strict=True)
     ]
     added, damping = both(runs, Form.SEAKEEPING)

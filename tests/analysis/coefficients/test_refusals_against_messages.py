@@ -9,6 +9,7 @@ import pytest
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.campaign import Request, campaign_coefficients
 from analysis.coefficients.cycle_fit import FIRST, fit_cycles
+from analysis.coefficients.dry_run import without_dry
 from analysis.coefficients.linear_fit import LinearFit, lacking_places, linear_fit
 from analysis.coefficients.names import Form
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
@@ -98,16 +99,16 @@ def test_values_that_are_not_finite_are_refused() -> None:
 def test_a_dry_run_that_is_not_one() -> None:
     wet = replace(run(), body=None)
     dry = net(ideal_struts(replace(HEAVE, medium=Medium.AIR), name="dry"))
-    assert wet.without_dry(dry).flags[-1].code == "dry_run_taken_off"
+    assert without_dry(wet, dry).flags[-1].code == "dry_run_taken_off"
     with pytest.raises(ConfigurationError, match="must not be, again"):
-        wet.without_dry(dry).without(BODY)
+        without_dry(wet, dry).without(BODY)
     with pytest.raises(ConfigurationError, match="run in water"):
-        wet.without_dry(wet)
+        without_dry(wet, wet)
     with pytest.raises(ConfigurationError, match="inertia is taken off as well"):
-        run().without_dry(dry)
+        without_dry(run(), dry)
     pitch = SetPoint(0.8, ECCENTRICITY_M, math.pi, medium=Medium.AIR)
     with pytest.raises(ConfigurationError, match="same set-point"):
-        wet.without_dry(net(ideal_struts(pitch, name="dry pitch")))
+        without_dry(wet, net(ideal_struts(pitch, name="dry pitch")))
 
 
 def test_a_run_without_scatter_gives_values_and_no_interval() -> None:

@@ -9,8 +9,10 @@ from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.cycle_fit import CycleFit
 from analysis.coefficients.linear_fit import linear_fit
 from analysis.coefficients.names import Form
+from analysis.coefficients.phasors import interleaved
 from analysis.coefficients.repeats import outliers, repeatability, with_repeats
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
+from analysis.ideal_rig import mass_matrix
 from benchmarks.coefficients_campaigns import BODY, RESTORING, VERTICAL, Made, Scatter, made_up
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import SetPoint
@@ -107,7 +109,13 @@ def test_a_run_without_repeats_stays_as_it_is() -> None:
 
 @pytest.mark.parametrize(
     "other",
-    [{"frequency_hz": 0.82}, {"speed_m_s": 0.1}, {"drift_rad": 0.01}],
+    [
+        {"frequency_hz": 0.82},
+        {"speed_m_s": 0.1},
+        {"drift_rad": 0.01},
+        {"heel_rad": 0.2},
+        {"rudder_rad": 0.1},
+    ],
     ids=lambda other: next(iter(other)),
 )
 def test_runs_at_another_set_point_are_no_repeats(other: dict[str, float]) -> None:
@@ -116,3 +124,21 @@ def test_runs_at_another_set_point_are_no_repeats(other: dict[str, float]) -> No
     assert len(kind.runs) == 3
     (kind,) = repeatability([*cycles[:2], replace(cycles[2], **other)]).kinds  # type: ignore[arg-type]
     assert len(kind.runs) == 2
+
+
+def test_a_run_with_another_body_is_a_repeat_of_the_same_water() -> None:
+    """Its gross loads differ by what the heavier body takes, and the water's do not."""
+    cycles = repeats(3, 0.0, np.random.default_rng(3))
+    body = cycles[2].body
+    assert body is not None
+    heavier = replace(body, mass_kg=body.mass_kg + 20.0)
+    mass = mass_matrix(heavier, Plane.VERTICAL) - mass_matrix(body, Plane.VERTICAL)
+    more = -((2.0 * np.pi * cycles[2].frequency_hz) ** 2) * mass @ cycles[2].motion
+    moved = np.zeros(len(cycles[2].phasors.names), dtype=complex)
+    for load, change in zip(("force 1", "moment 1"), more, strict=True):
+        moved[cycles[2].phasors.index(load)] = change
+    own = cycles[2].phasors
+    heavy = replace(own, real=replace(own.real, values=own.real.values + interleaved(moved)))
+    found = repeatability([*cycles[:2], replace(cycles[2], phasors=heavy, body=heavier)])
+    assert found.relative.max() < 1e-3
+    assert outliers(found) == ()

@@ -175,6 +175,7 @@ CHAINS: dict[str, Callable[[float], Chain]] = {
     ),
     "gauge_aft_relative": lambda by: responding(force_aft=lambda _: 1.0 + by),
     "gauge_fore_relative": lambda by: responding(force_fore=lambda _: 1.0 + by),
+    "surge_gauge_relative": lambda by: responding(force_x=lambda _: 1.0 + by),
     "cross_talk_aft": lambda by: talking("force_aft", "force_fore", by),
     "cross_talk_fore": lambda by: talking("force_fore", "force_aft", by),
 }

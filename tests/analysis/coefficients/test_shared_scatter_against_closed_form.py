@@ -10,6 +10,7 @@ from analysis.coefficients.campaign import Request, campaign_coefficients
 from analysis.coefficients.campaign_budget import budget
 from analysis.coefficients.campaign_result import CampaignCoefficients
 from analysis.coefficients.corrections import zero_reading
+from analysis.coefficients.dry_run import without_dry
 from analysis.coefficients.linear_fit import linear_fit
 from analysis.coefficients.names import Form
 from analysis.coefficients.phasors import Phasors
@@ -100,7 +101,7 @@ def test_a_dry_run_of_two_repeats_does_not_average_out() -> None:
     rig, dry = vertical_rig(), measured("dry", Medium.AIR, 9)
     wet = [measured(f"wet {k}", Medium.WATER, k) for k in (1, 2)]
     restoring = np.array(rig.water.restoring)
-    cycles = [one.without_dry(dry).without(restoring=restoring) for one in wet]
+    cycles = [without_dry(one, dry).without(restoring=restoring) for one in wet]
     both = [
         linear_fit(some, Form.SEAKEEPING, StatedUncertainties()).fit
         for some in (cycles[:1], cycles)

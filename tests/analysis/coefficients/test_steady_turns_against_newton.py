@@ -34,9 +34,15 @@ def body() -> Body:
     return Body(mass_kg=float(total), inertia_kg_m2=float(about), cg_x_m=cg)
 
 
-def held(radius_m: float, rate: float, drift: float) -> tuple[float, float, float]:
-    """Force to starboard, moment and force ahead that the cloud takes on its circle, by Newton."""
+def held(
+    radius_m: float, rate: float, drift: float, astern_m: float = 0.0
+) -> tuple[float, float, float]:
+    """Force to starboard, moment and force ahead that the cloud takes on its circle, by Newton.
+
+    The cloud may lie further astern of the midpoint, which goes round the circle.
+    """
     step = 1e-4
+    places_ahead = MASSES[:, 1:2] - astern_m
 
     def places(time_s: float) -> np.ndarray:
         turned = rate * time_s  # of the way's direction; x north, y east, turning to starboard
@@ -47,25 +53,33 @@ def held(radius_m: float, rate: float, drift: float) -> tuple[float, float, floa
         bow = np.array([math.cos(heading), math.sin(heading)])
         star = np.array([-math.sin(heading), math.cos(heading)])
         assert np.dot(way, right) == pytest.approx(0.0, abs=1e-12)
-        return middle + MASSES[:, 1:2] * bow + MASSES[:, 2:3] * star
+        return middle + places_ahead * bow + MASSES[:, 2:3] * star
 
     acceleration = (places(step) - 2.0 * places(0.0) + places(-step)) / step**2
     forces = MASSES[:, :1] * acceleration
     bow = np.array([math.cos(drift), math.sin(drift)])
     star = np.array([-math.sin(drift), math.cos(drift)])
     ahead, across = forces @ bow, forces @ star
-    moment = (MASSES[:, 1] * across - MASSES[:, 2] * ahead).sum()
+    moment = (places_ahead[:, 0] * across - MASSES[:, 2] * ahead).sum()
     return float(across.sum()), float(moment), float(ahead.sum())
 
 
-def turn(radius_m: float, drift: float, coefficients: dict[str, float], sign: float) -> SteadyTurn:
+def turn(
+    radius_m: float,
+    drift: float,
+    coefficients: dict[str, float],
+    sign: float,
+    astern_m: float = 0.0,
+) -> SteadyTurn:
+    """A circle of the midpoint; the point that body and coefficients are about may lie astern."""
     rate = sign * U_M_S / radius_m
-    v = -U_M_S * math.sin(drift)
+    v = -U_M_S * math.sin(drift) - rate * astern_m
     water = {"Y": 0.0, "N": 0.0}
     for name, value in coefficients.items():
         load, factors = name.split("_")
         water[load] += value * v ** factors.count("v") * rate ** factors.count("r")
-    force, moment, ahead = held(radius_m, rate, drift)
+    water["N"] -= astern_m * water["Y"]
+    force, moment, ahead = held(radius_m, rate, drift, astern_m)
     return SteadyTurn(
         f"turn-{radius_m}-{drift}-{sign}", radius_m, rate, force - water["Y"], moment - water["N"],
         1e-3, 1e-3, drift, ahead + 5.0, 1e-3,
@@ -136,6 +150,24 @@ def test_radius_and_rate_are_budgeted_as_a_slip_of_theirs_moves_the_values(state
                 if one.label == stated]  # fmt: skip
     shown = (values(1e-5) - values(-1e-5)) / 2e-5
     assert found == pytest.approx(shown, rel=1e-4, abs=1e-4 * np.abs(shown).max())
+
+
+def test_a_midpoint_that_stands_elsewhere_is_budgeted_as_it_moves_the_values() -> None:
+    """The hull's own point further astern than is believed: Newton's loads, and slower across."""
+    circles = [(radius, drift, sign) for radius in (3.0, 8.0)
+               for drift in (-0.1, 0.0, 0.12) for sign in (1.0, -1.0)]  # fmt: skip
+
+    def fitted(astern_m: float, **stated: float):
+        turns = [turn(radius, drift, PUT_IN, sign, astern_m) for radius, drift, sign in circles]
+        cycles = [turn_cycle(one, 0.5, body()) for one in turns]
+        return fit_cycles(cycles, tuple(PUT_IN), (0,), stated=StatedUncertainties(**stated))
+
+    fit, by = fitted(0.0, midpoint_x_m=1.0), 1e-3
+    (found,) = [one.dense(len(PUT_IN))[:, 0] for one in fit.uncertain.contributions
+                if one.label == "midpoint_x_m"]  # fmt: skip
+    shown = (fitted(by).values - fitted(-by).values) / (2.0 * by)
+    assert np.abs(found) == pytest.approx(np.abs(shown), rel=1e-3, abs=1e-3 * np.abs(shown).max())
+    assert np.sign(found @ shown) * (found @ shown) == pytest.approx(found @ found, rel=1e-3)
 
 
 @pytest.mark.parametrize(

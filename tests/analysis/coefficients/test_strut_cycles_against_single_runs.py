@@ -14,6 +14,7 @@ from analysis.coefficients.corrections import (
     response_at,
     zero_reading,
 )
+from analysis.coefficients.dry_run import without_dry
 from analysis.coefficients.phasors import Phasors
 from analysis.coefficients.strut_cycle import StrutCycle, measured_cycle, static_cycle
 from analysis.coefficients.strut_phasors import reading_phasors
@@ -136,7 +137,7 @@ def test_zero_runs_come_off_the_means_alone(analysis: Analysis) -> None:
 def test_a_dry_run_leaves_the_waters_loads() -> None:
     wet = measured_cycle(read(), RIG.oscillator).model()
     air = measured_cycle(read(replace(POINT, medium=Medium.AIR)), RIG.oscillator).model()
-    left = wet.without_dry(air)
+    left = without_dry(wet, air)
     taken = wet.without(RIG.body)
     assert [flag.code for flag in left.flags].count("dry_run_taken_off") == 1
     first, third = ((f"force {n}", f"moment {n}") for n in (1, 3))
