@@ -6,6 +6,7 @@ from itertools import combinations
 import numpy as np
 
 from analysis.inertia.bifilar import yaw_from_period
+from analysis.inertia.lengthening import bifilar_lengthening
 from analysis.inertia.spread import SuspensionGyradius, compare_geometries
 from analysis.uncertainty.estimate import Estimate, difference, joint
 from analysis.uncertainty.monte_carlo import Assessment
@@ -189,7 +190,6 @@ def _tilts(
         raise ConfigurationError(f"{test.job.path}: tilted needs the level yaw test too; add yaw")
     tilted = []
     for number, yaw_test in enumerate(table.tilted, 1):
-        runs = test.period(yaw_test, f"tilted[{number}]")
         at = next((s for s in table.suspensions if s.yaw is not None), table.suspensions[0])
         spacing, line = (
             stated_value(at, key, at.name)
@@ -197,7 +197,10 @@ def _tilts(
             else stated_value(yaw_test, key)
             for key in ("half_spacing_m", "line_m")
         )
-        assessment = yaw_from_period(runs.period, spacing, line, gravity_of(table))
+        gravity = gravity_of(table)
+        lengthens = bifilar_lengthening(spacing.value, line.value, gravity.value)
+        runs = test.period(yaw_test, f"tilted[{number}]", lengthens=lengthens)
+        assessment = yaw_from_period(runs.period, spacing, line, gravity)
         if at.line_mass_kg:
             share = line_share(at, stated_value(table.model, "mass_kg", "model"))
             assessment = yaw_off_lines(

@@ -89,7 +89,8 @@ def read_period(
     Raises
     ------
     ConfigurationError
-        If a record's channel is not named, or two oscillations are asked of what tells one.
+        If a record's channel is not named, two oscillations are asked of what tells one, or an
+        amplitude is stated where it is not known what it does.
     DataError
         If the data do not carry a period.
     """
@@ -105,7 +106,7 @@ def read_period(
     if source.stopwatch:
         timed = stopwatch_period(source.stopwatch, reaction_s=source.reaction_s, subject=where)
         how = f"stopwatch, {len(timed.runs)} readings"
-        period, flags = _of_small_swings(timed.estimate, source, where, lengthens)
+        period, flags = _of_small_swings(job, timed.estimate, source, where, lengthens)
         factor = period.value / timed.estimate.value
         runs = tuple(factor * run for run in timed.runs)
         return PeriodRuns(
@@ -118,10 +119,19 @@ def read_period(
 
 
 def _of_small_swings(
-    timed: Estimate, source: PeriodSource, where: str, lengthens: Lengthening | None
+    job: Job[Any],
+    timed: Estimate,
+    source: PeriodSource,
+    where: str,
+    lengthens: Lengthening | None,
 ) -> tuple[Estimate, tuple[Flag, ...]]:
     """Return a stopwatch's period without what geometry does at the amplitude that is stated."""
     if lengthens is None:
+        if source.amplitude_deg is not None:
+            raise ConfigurationError(
+                f"{job.path}: {where}.amplitude_deg: what an amplitude does to this period is not "
+                "known; leave it out and count small swings, or take records"
+            )
         return timed, ()
     powers = lengthens(timed.value)
     if source.amplitude_deg is None:

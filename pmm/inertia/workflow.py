@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from analysis.inertia.bifilar import yaw_gyradius
 from analysis.inertia.corrections import yaw_without_lines
 from analysis.inertia.elementary_functions import Value
+from analysis.inertia.lengthening import bifilar_lengthening
 from analysis.inertia.workflow import Step, StepResult, assess_workflow, next_step
 from analysis.uncertainty.budget import derived
 from analysis.uncertainty.estimate import Estimate, exactly
@@ -89,6 +90,8 @@ def workflow(test: Experiment[BifilarTable], hung: Sequence[SuspensionResult]) -
         return None
     inertias: dict[Step, Estimate] = {}
     first = hung[0]
+    lines = first.table
+    lengthens = bifilar_lengthening(lines.half_spacing_m, lines.line_m, gravity_of(table).value)
     if first.yaw is not None:
         inertias[Step.TEST] = _inertia(
             table, first, first.yaw, stated_value(table.model, "mass_kg", "model")
@@ -97,7 +100,8 @@ def workflow(test: Experiment[BifilarTable], hung: Sequence[SuspensionResult]) -
         source = getattr(table, _TABLES[step])
         if source is None:
             continue
-        period = test.period(source.period, f"{_TABLES[step]}.period").period
+        where = f"{_TABLES[step]}.period"
+        period = test.period(source.period, where, lengthens=lengthens).period
         inertias[step] = _inertia(table, first, period, stated_value(source, "mass_kg"))
         name = f"{_TABLES[step]}_i_yaw_kg_m2"
         test.findings.append(Finding(name, f"{words}: yaw inertia", inertias[step]))
