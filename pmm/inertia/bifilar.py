@@ -1,18 +1,18 @@
 """``pmm inertia bifilar``: yaw, pitch, roll and depth of a body on two lines."""
 
+import math
 from collections.abc import Iterator, Mapping
-from itertools import combinations
+from dataclasses import replace
 
 import numpy as np
 
 from analysis.inertia.bifilar import yaw_from_period
 from analysis.inertia.lengthening import bifilar_lengthening
 from analysis.inertia.spread import SuspensionGyradius, compare_geometries
-from analysis.uncertainty.estimate import Estimate, difference, joint
+from analysis.uncertainty.estimate import Estimate, joint
 from analysis.uncertainty.monte_carlo import Assessment
 from analysis.uncertainty.redundancy import Redundancy, best_fit
 from hardware.description.errors import ConfigurationError
-from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
 from pmm.inertia.air import without_air
 from pmm.inertia.bifilar_axes import plane_axes
@@ -26,7 +26,7 @@ from pmm.inertia.stated_values import gravity_of, stated_value
 from pmm.inertia.suspension import SuspensionResult, hang
 from pmm.inertia.workflow import workflow
 
-_APART = 3.0  # joint standard uncertainties that two methods of one suspension may differ by
+_REMEDY = "; check line length (period), sway record (ratio) and count (beats)"
 
 
 def run(path: str) -> Outcome:
@@ -94,89 +94,75 @@ def _results(
     gyradii: dict[str, Estimate] = {}
     used: dict[str, Assessment] = {}
     for axis in AXES:
-        chosen = [
-            (suspension, assessment)
-            for suspension in hung
-            if (assessment := _chosen(test.table, suspension, axis))
-        ]
-        if not chosen:
+        chosen = [_gyradius(test, suspension, axis) for suspension in hung]
+        rows = [row for row in chosen if row is not None]
+        if not rows:
             continue
-        used[axis] = chosen[0][1]
-        gyradii[axis] = used[axis].result
-        if len(chosen) > 1:
-            rows = [
-                SuspensionGyradius(
-                    suspension.table.name,
-                    assessment.result,
-                    suspension.table.half_spacing_m,
-                    suspension.table.line_m,
-                )
-                for suspension, assessment in chosen
-            ]
-            spread = compare_geometries(rows, result=f"k_{axis}_m")
-            gyradii[axis] = spread.gyradius
+        gyradii[axis], single = rows[0][0].gyradius, rows[0][1]
+        if len(rows) > 1:
+            spread = compare_geometries([row for row, _ in rows], result=f"k_{axis}_m")
+            gyradii[axis], single = spread.gyradius, None
             test.flags += spread.flags
             test.redundancy.append(spread.redundancy)
+        if single is not None:
+            used[axis] = single
         test.findings = [finding for finding in test.findings if finding.name != f"k_{axis}_m"]
-        single = used[axis] if len(chosen) == 1 else None
         test.findings.append(Finding(f"k_{axis}_m", f"{axis} gyradius", gyradii[axis], single))
-    test.flags += [flag for suspension in hung for flag in _between_methods(suspension)]
-    test.redundancy += [redundancy for suspension in hung for redundancy in _methods(suspension)]
-    if len([key for key in hung[0].assessments if key.startswith("yaw")]) > 1 and "yaw" in used:
-        method = next(
-            key for key, assessment in hung[0].assessments.items() if assessment is used["yaw"]
-        )
+    if len(_by_methods(hung[0])) > 1 and "yaw" in gyradii:
+        method = _chosen(test.table, hung[0], "yaw")
         test.notes.append(f"the {method} is the result (method in the file chooses another)")
     return gyradii, used
 
 
-def _between_methods(suspension: SuspensionResult) -> Iterator[Flag]:
-    """Flag methods whose yaw gyradii differ by more than three times their joint uncertainty."""
-    gyradii = [
-        (key, assessment.result)
-        for key, assessment in suspension.assessments.items()
-        if key.startswith("yaw by")
-    ]
-    for (first, a), (second, b) in combinations(gyradii, 2):
-        apart = difference(a, b)
-        if abs(apart.value) > _APART * apart.uncertainty:
-            message = (
-                f"{suspension.table.name}: {first} gives {a.value:.5g} m and {second} "
-                f"{b.value:.5g} m, {abs(apart.value):.2g} m apart "
-                f"(limit {_APART * apart.uncertainty:.2g} m, "
-                f"{_APART:g} joint standard uncertainties); "
-                "check line length (period), sway record (ratio) and count (beats)"
-            )
-            yield Flag("methods_disagree", Severity.WARNING, message)
+def _gyradius(
+    test: Experiment[BifilarTable], suspension: SuspensionResult, axis: str
+) -> tuple[SuspensionGyradius, Assessment | None] | None:
+    """Return a suspension's gyradius, and its assessment where that has the same result.
+
+    Where several methods do not agree, their scatter counts beside what is stated, as in
+    :func:`analysis.uncertainty.redundancy.best_fit`.
+    """
+    key = _chosen(test.table, suspension, axis)
+    if key is None:
+        return None
+    assessment: Assessment | None = suspension.assessments[key]
+    gyradius, held = suspension.assessments[key].result, suspension.table
+    methods = _by_methods(suspension)
+    if axis == "yaw" and len(methods) > 1:
+        agreement = _agreement(f"{held.name}: yaw gyradius by several methods", methods)
+        test.redundancy.append(agreement)
+        test.flags += [replace(flag, message=flag.message + _REMEDY) for flag in agreement.flags()]
+        if agreement.widening > 1.0:
+            scatter = gyradius.uncertainty * math.sqrt(agreement.widening**2 - 1.0)
+            gyradius = gyradius.widened(scatter, float(agreement.degrees_of_freedom))
+            assessment = None
+    row = SuspensionGyradius(held.name, gyradius, held.half_spacing_m, held.line_m)
+    return row, assessment
 
 
-def _methods(suspension: SuspensionResult) -> Iterator[Redundancy]:
-    """Yield how the yaw gyradii of several methods agree."""
-    gyradii = {
+def _by_methods(suspension: SuspensionResult) -> dict[str, Estimate]:
+    """Return the yaw gyradii by the methods that the suspension has data for."""
+    return {
         key: assessment.result
         for key, assessment in suspension.assessments.items()
         if key.startswith("yaw by")
     }
-    if len(gyradii) > 1:
-        matrix, measured = np.ones((len(gyradii), 1)), joint(gyradii.values())
-        title = f"{suspension.table.name}: yaw gyradius by several methods"
-        yield best_fit(matrix, measured, subject=title, results=("k_yaw_m",), data=list(gyradii))[1]
 
 
-def _chosen(table: BifilarTable, suspension: SuspensionResult, axis: str) -> Assessment | None:
-    """Return the method's that the file names, or else the surest."""
+def _agreement(title: str, methods: Mapping[str, Estimate]) -> Redundancy:
+    matrix, measured = np.ones((len(methods), 1)), joint(methods.values())
+    return best_fit(matrix, measured, subject=title, results=("k_yaw_m",), data=list(methods))[1]
+
+
+def _chosen(table: BifilarTable, suspension: SuspensionResult, axis: str) -> str | None:
+    """Return the key of the method that the file names, or else of the surest."""
     if axis != "yaw":
-        return suspension.assessments.get(axis)
+        return axis if axis in suspension.assessments else None
+    methods = _by_methods(suspension)
     if table.method is not None:
-        return suspension.assessments.get(f"yaw by {table.method}")
-    assessments = [
-        assessment for key, assessment in suspension.assessments.items() if key.startswith("yaw by")
-    ]
-    return (
-        min(assessments, key=lambda assessment: assessment.result.uncertainty)
-        if assessments
-        else None
-    )
+        key = f"yaw by {table.method}"
+        return key if key in methods else None
+    return min(methods, key=lambda key: methods[key].uncertainty, default=None)
 
 
 def _tilts(

@@ -75,5 +75,26 @@ def beaten(folder: Path, oscillations: float) -> set[str]:
 def test_methods_that_differ_are_told(tmp_path: Path) -> None:
     # the mean oscillation's frequency over the beats' (half the sum, and the difference)
     per_beat = 0.5 * (1.0 / SWAY_S + 1.0 / YAW_S) / (1.0 / SWAY_S - 1.0 / YAW_S)
-    assert "methods_disagree" not in beaten(tmp_path, 6.0 * per_beat)
-    assert "methods_disagree" in beaten(tmp_path, 6.0 * per_beat + 2.0)
+    assert "data_disagree" not in beaten(tmp_path, 6.0 * per_beat)
+    assert "data_disagree" in beaten(tmp_path, 6.0 * per_beat + 2.0)
+
+
+@pytest.mark.parametrize("off", [0.0, 0.01])
+def test_methods_that_differ_widen_the_chosen_one(tmp_path: Path, off: float) -> None:
+    """By hand: period and ratio share yaw period and spacing, and differ by the rest."""
+    path = tmp_path / "job.toml"
+    yaw = f"yaw = {{ period_s = {YAW_S}, u_period_s = 0.001 }}\n"
+    sway = f"sway = {{ period_s = {SWAY_S * (1.0 + off)}, u_period_s = {2e-4 * SWAY_S} }}\n"
+    path.write_text('method = "period"\n' + HEAD + yaw + sway)
+    outcome = bifilar.run(str(path))
+    found = {one.name: one for one in outcome.findings}
+    line, gravity = 0.5 * 0.001 / LINE_M, 0.5 * 0.0005 / G
+    apart = (off / (1.0 + off)) / math.sqrt(line**2 + gravity**2 + 2e-4**2)
+    alone, chosen = found["k_yaw_by_period_m"], found["k_yaw_m"]
+    stated = GYRADIUS_M * math.hypot(line, gravity, 0.001 / YAW_S, 0.0005 / HALF_M)
+    assert alone.estimate.uncertainty == pytest.approx(stated, rel=1e-6)
+    assert chosen.estimate.value == pytest.approx(GYRADIUS_M, rel=1e-9)
+    assert chosen.estimate.uncertainty == pytest.approx(max(apart, 1.0) * stated, rel=0.01)
+    assert (chosen.assessment is None) == (apart > 1.0)
+    told = [flag.message for flag in outcome.flags if flag.code == "data_disagree"]
+    assert [message.endswith("and count (beats)") for message in told] == [True] * (apart > 1.0)
