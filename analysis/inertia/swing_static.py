@@ -1,9 +1,10 @@
 """The swing at rest: centre of gravity from tilts under calibration weights (eqs 1 to 3, 8 to 13).
 
-    tan(alpha) = m_W d_W / S [+ offset],      S = m_S d_S + m_M d_M
+    tan(alpha) = m_W (d_W - h_W tan(alpha - offset)) / S [+ offset],      S = m_S d_S + m_M d_M
 
-is linear in 1/S, so one solve takes any number of levers at once and needs no starting value.
-Gravity cancels. F1 has no offset; F2, with one, is the better.
+with the weights h_W below the pivot, is linear in 1/S, so one solve takes any number of levers at
+once and needs no starting value; where the weights do not hang at the pivot's height, an offset is
+put in again. Gravity cancels. F1 has no offset; F2, with one, is the better.
 """
 
 from collections.abc import Sequence
@@ -20,6 +21,7 @@ from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 
 _MOMENT = ("first_moment_kg_m",)
+_ROUNDS = 3  # for the offset in the pull: each leaves a hundredth of what it was off or less
 
 
 @dataclass(frozen=True)
@@ -32,12 +34,20 @@ class LeverSeries:
         Horizontal distance of the weights from the pivot.
     weight_kg, tilt_rad
         Shape ``(readings,)``; tilts towards the weights are positive.
+    drop_m
+        Depth of the points that the weights hang from below the pivot, at rest.
     """
 
     name: str
     lever_m: float
     weight_kg: FloatArray
     tilt_rad: FloatArray
+    drop_m: float = 0.0
+
+    def pull_kg_m(self, offset: float) -> FloatArray:
+        """Return weight times lever as it is at each tilt, whose tangent at rest is ``offset``."""
+        turned = np.tan(self.tilt_rad) - offset
+        return np.asarray(self.weight_kg * (self.lever_m - self.drop_m * turned))
 
 
 @dataclass(frozen=True)
@@ -98,7 +108,7 @@ def fit_static(series: Sequence[LeverSeries], *, with_offset: bool = True) -> St
     pooled = _fit(series, with_offset)
     single_fits = tuple(_fit([levers], with_offset) for levers in series)
     wider, between = _between_levers(pooled, single_fits)
-    agreements = (_readings(series, with_offset), *between)
+    agreements = (_readings(series, with_offset, pooled.offset_rad.value), *between)
     return StaticResult(wider, single_fits, agreements, _flags(series, agreements))
 
 
@@ -142,16 +152,20 @@ def _check(levers: LeverSeries) -> None:
         )
 
 
-def _columns(series: Sequence[LeverSeries], with_offset: bool) -> tuple[FloatArray, FloatArray]:
-    pull = np.concatenate([levers.weight_kg * levers.lever_m for levers in series])
+def _columns(
+    series: Sequence[LeverSeries], with_offset: bool, offset: float
+) -> tuple[FloatArray, FloatArray]:
+    pull = np.concatenate([levers.pull_kg_m(offset) for levers in series])
     tangent = np.concatenate([np.tan(levers.tilt_rad) for levers in series])
     return np.column_stack([pull, np.ones(pull.size)][: 1 + with_offset]), tangent
 
 
 def _fit(series: Sequence[LeverSeries], with_offset: bool) -> StaticMoment:
-    matrix, tangent = _columns(series, with_offset)
-    inverse = np.linalg.inv(matrix.T @ matrix)
-    solved = inverse @ (matrix.T @ tangent)
+    solved = np.zeros(2)
+    for _ in range(_ROUNDS):
+        matrix, tangent = _columns(series, with_offset, float(solved[1]) if with_offset else 0.0)
+        inverse = np.linalg.inv(matrix.T @ matrix)
+        solved = inverse @ (matrix.T @ tangent)
     residual = tangent - matrix @ solved
     freedom = max(tangent.size - matrix.shape[1], 1)
     variance = float(residual @ residual) / freedom
@@ -166,9 +180,9 @@ def _fit(series: Sequence[LeverSeries], with_offset: bool) -> StaticMoment:
     )
 
 
-def _readings(series: Sequence[LeverSeries], with_offset: bool) -> Redundancy:
+def _readings(series: Sequence[LeverSeries], with_offset: bool, offset: float) -> Redundancy:
     """Return how the readings scatter about the pooled fit."""
-    matrix, tangent = _columns(series, with_offset)
+    matrix, tangent = _columns(series, with_offset, offset)
     names = [
         f"{levers.name} with {weight:g} kg" for levers in series for weight in levers.weight_kg
     ]

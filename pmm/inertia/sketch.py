@@ -70,7 +70,7 @@ def on_two_lines(
 def about_axis(
     title: str,
     depths_m: Mapping[str, float],
-    arms_m: Mapping[str, float],
+    arms_m: Mapping[str, tuple[float, float]],
     second_m: float | None = None,
 ) -> Sketch:
     """Return a body that swings about an axis.
@@ -80,7 +80,7 @@ def about_axis(
     depths_m
         Of centres of gravity below the axis, by what is on it.
     arms_m
-        Of weights that tilt it, sideways, by name.
+        Of weights that tilt it, sideways and below the axis, by name.
     second_m
         Height of a second axis over the first.
     """
@@ -91,7 +91,8 @@ def about_axis(
         for name, depth in depths_m.items()
     ]
     measures += [
-        Dimension(pivot, (arm, 0.0), f"{name}: {arm:.4g} m") for name, arm in arms_m.items()
+        Dimension((0.0, -drop), (arm, -drop), f"{name}: {arm:.4g} m")
+        for name, (arm, drop) in arms_m.items()
     ]
     if second_m is not None:
         axes["second axis"] = (0.0, second_m)
@@ -99,7 +100,7 @@ def about_axis(
         measures.append(Dimension(pivot, (0.0, second_m), f"{second_m:.4g} m"))
     return Sketch(
         title,
-        tuple((pivot, (arm, 0.0)) for arm in arms_m.values()),
+        tuple(((0.0, -drop), (arm, -drop)) for arm, drop in arms_m.values()),
         (((0.0, min(ends)), (0.0, max(ends))),),
         axes,
         {f"CG, {name}": (0.0, -depth) for name, depth in depths_m.items()},

@@ -56,10 +56,9 @@ def first_moment(table: StateTable, mass: Estimate) -> Moment:
     return Moment(moment, distance(moment, mass), static)
 
 
-def _tilts(table: StateTable) -> StaticResult:
-    return fit_static(
-        [lever.series() for lever in table.levers], with_offset=table.static_fit == "F2"
-    )
+def _tilts(table: StateTable, deeper: float = 0.0) -> StaticResult:
+    series = [lever.series(deeper) for lever in table.levers]
+    return fit_static(series, with_offset=table.static_fit == "F2")
 
 
 def _scaled(table: StateTable, static: StaticResult) -> Estimate:
@@ -68,9 +67,12 @@ def _scaled(table: StateTable, static: StaticResult) -> Estimate:
     lever_relative = float(np.mean([lever.u_lever_m / lever.lever_m for lever in table.levers]))
     levers = ", ".join(sorted(f"{lever.name} of {lever.lever_m:g} m" for lever in table.levers))
     by_levers = moment.widened(moment.value * lever_relative, label=f"levers {levers}")
-    return by_levers.widened(
+    by_scale = by_levers.widened(
         moment.value * table.u_tilt_relative, label="scale of the inclinometer"
     )
+    deeper = _tilts(table, 1.0).pooled.moment.value - moment.value
+    drops = ", ".join(sorted(f"{lever.name} of {lever.drop_m:g} m" for lever in table.levers))
+    return by_scale.widened(deeper, label=f"drops {drops}")
 
 
 @dataclass(frozen=True)
@@ -107,7 +109,7 @@ def run(path: str) -> Outcome:
         about_axis(
             table.name,
             {_WORDS[key]: states[key].moment.cg.value for key in _DRAWN if key in states},
-            {lever.name: lever.lever_m for lever in table.tare.levers},
+            {lever.name: (lever.lever_m, lever.drop_m) for lever in table.tare.levers},
             None if upper is None else upper.pivot_distance_m,
         )
     )

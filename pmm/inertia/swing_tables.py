@@ -18,7 +18,13 @@ from pmm.inertia.reading import one_of, require_together
 
 @dataclass(frozen=True)
 class LeverTable:
-    """Tilts under weights at one lever; tilts towards the weights are positive."""
+    """Tilts under weights at one lever; tilts towards the weights are positive.
+
+    Attributes
+    ----------
+    drop_m
+        Depth of the points that the weights hang from below the pivot.
+    """
 
     name: str
     lever_m: float
@@ -26,6 +32,8 @@ class LeverTable:
     tilt_deg: tuple[float, ...] | None = None
     tilt_rad: tuple[float, ...] | None = None
     u_lever_m: float = 0.0
+    drop_m: float = 0.0
+    u_drop_m: float = 0.0
 
     @staticmethod
     def rules(table: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
@@ -35,11 +43,13 @@ class LeverTable:
         if isinstance(weights, list) and isinstance(tilts, list) and len(weights) != len(tilts):
             yield "weight_kg", f"has {len(weights)} weights for {len(tilts)} tilts"
 
-    def series(self) -> LeverSeries:
-        """Return the readings in SI units."""
+    def series(self, deeper: float = 0.0) -> LeverSeries:
+        """Return the readings in SI units, with so many standard uncertainties more of drop."""
         tilt = self.tilt_rad or tuple(map(radians, self.tilt_deg or ()))
         weights = np.array(self.weight_kg, dtype=np.float64)
-        return LeverSeries(self.name, self.lever_m, weights, np.array(tilt, dtype=np.float64))
+        drop_m = self.drop_m + deeper * self.u_drop_m
+        tilts = np.array(tilt, dtype=np.float64)
+        return LeverSeries(self.name, self.lever_m, weights, tilts, drop_m)
 
 
 @dataclass(frozen=True)

@@ -144,13 +144,13 @@ def static_figure(test: StaticTest) -> "Figure":
         axes = figure.add_subplot(grid[0])
         rest = figure.add_subplot(grid[1], sharex=axes)
         for number, series in enumerate(test.series):
-            pull, tangent = series.weight_kg * series.lever_m, np.tan(series.tilt_rad)
+            pull, tangent = series.pull_kg_m(offset), np.tan(series.tilt_rad)
             color, marker = PALETTE[number % len(PALETTE)], "osDv^P*"[number % 7]
             label = f"{shown_name(series.name)}, lever {series.lever_m:g} m"
             axes.plot(pull, tangent, marker, ms=5.0, color=color, label=label)
             residual = 1e3 * (tangent - offset - slope * pull)
             rest.plot(pull, residual, marker, ms=5.0, color=color)
-        furthest = max(float((series.weight_kg * series.lever_m).max()) for series in test.series)
+        furthest = max(float(series.pull_kg_m(offset).max()) for series in test.series)
         axes.plot([0.0, furthest], [offset, offset + slope * furthest], color=TRACE, label="fit")
         axes.set_title(
             f"first moment {pooled.moment.value:.5g} kg m, u of the fit "
