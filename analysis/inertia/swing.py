@@ -5,6 +5,7 @@ I_P = T^2/(4 pi^2) m g R         I = I_P - m R^2             (eqs 4 to 7)
 
 import math
 from dataclasses import dataclass
+from functools import partial
 
 from analysis.inertia.elementary_functions import Value, sqrt
 from analysis.uncertainty.budget import derived
@@ -35,7 +36,8 @@ class SwingState:
     Attributes
     ----------
     period, mass, moment, gravity
-        Undamped period in s, mass in kg, first moment about the pivot in kg m, g in m/s2.
+        Undamped period in s, mass in kg, first moment about the pivot in kg m, and g in m/s2 with
+        which that moment rights the swing.
     """
 
     period: Estimate
@@ -87,6 +89,17 @@ def swing_inertia(state: SwingState, *, seed: int = 0) -> SwingInertia:
     )
 
 
+def moment_in_air(total_moment_kg_m: Value, tare_moment_kg_m: Value, displaced: float) -> Value:
+    """First moment that rights a loaded swing, kg m: less what bears the model in air.
+
+    Parameters
+    ----------
+    displaced
+        Density of the air over the model's.
+    """
+    return total_moment_kg_m - displaced * (total_moment_kg_m - tare_moment_kg_m)
+
+
 def model_inertia(
     tare_period_s: Value,
     total_period_s: Value,
@@ -94,18 +107,29 @@ def model_inertia(
     total_moment_kg_m: Value,
     model_mass_kg: Value,
     gravity_m_s2: Value,
+    displaced: float = 0.0,
 ) -> Value:
-    """Inertia of the model about its own centre of gravity: total less swing less ``m d^2``."""
+    """Inertia of the model about its own centre of gravity: total less swing less ``m d^2``.
+
+    Parameters
+    ----------
+    total_moment_kg_m
+        Of the masses.
+    displaced
+        See :func:`moment_in_air`.
+    """
     about = gravity_m_s2 / (4.0 * math.pi**2)
-    total = total_period_s * total_period_s * total_moment_kg_m * about
+    righting = moment_in_air(total_moment_kg_m, tare_moment_kg_m, displaced)
+    total = total_period_s * total_period_s * righting * about
     tare = tare_period_s * tare_period_s * tare_moment_kg_m * about
     moment = total_moment_kg_m - tare_moment_kg_m
     return total - tare - moment * moment / model_mass_kg
 
 
-def model_gyradius(model_mass_kg: Value, **swing_inputs: Value) -> Value:
+def model_gyradius(model_mass_kg: Value, displaced: float = 0.0, **swing_inputs: Value) -> Value:
     """Gyradius of the model about its own centre of gravity, m; inputs of model_inertia."""
-    return sqrt(model_inertia(model_mass_kg=model_mass_kg, **swing_inputs) / model_mass_kg)
+    inertia = model_inertia(model_mass_kg=model_mass_kg, displaced=displaced, **swing_inputs)
+    return sqrt(inertia / model_mass_kg)
 
 
 @dataclass(frozen=True)
@@ -134,9 +158,15 @@ def model_on_swing(
     loaded: SwingState,
     model_mass: Estimate,
     *,
+    displaced: float = 0.0,
     seed: int = 0,
 ) -> SwingModel:
     """Return the model's centre of gravity and inertia from the swing alone and with it.
+
+    Parameters
+    ----------
+    displaced
+        Density of the air over the model's; the loaded swing's gravity has it in it.
 
     Raises
     ------
@@ -155,9 +185,10 @@ def model_on_swing(
 
     few = {k: inputs[k] for k in ("tare_moment_kg_m", "total_moment_kg_m", "model_mass_kg")}
     cg = assess("d_M", depth, few, unit="m", seed=seed)
-    inertia = assess("I_M", model_inertia, inputs, unit="kg m2", seed=seed + 1)
+    in_air = {"displaced": displaced}
+    inertia = assess("I_M", partial(model_inertia, **in_air), inputs, unit="kg m2", seed=seed + 1)
     _refuse_nothing(inertia.budget.result)
-    k = assess("k_M", model_gyradius, inputs, unit="m", seed=seed + 2)
+    k = assess("k_M", partial(model_gyradius, **in_air), inputs, unit="m", seed=seed + 2)
     total = pivot_inertia(loaded.period.value, 1.0, loaded.moment.value, loaded.gravity.value)
     share = inertia.budget.result.value / total
     return SwingModel(cg, inertia, k, share, share_flags(share, k.budget.result))

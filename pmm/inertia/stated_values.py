@@ -51,10 +51,15 @@ def given_or_none(table: object, key: str, place: str | None = None) -> Estimate
     return None if getattr(table, key) is None else stated_value(table, key, place)
 
 
-def gravity_of(table: Any) -> Estimate:
-    """Return gravity less buoyancy; that of anywhere at sea level where none is given."""
+def plain_gravity_of(table: Any) -> Estimate:
+    """Return gravity; that of anywhere at sea level where none is given."""
     is_stated = table.gravity_m_s2 is not None
-    plain = stated_value(table, "gravity_m_s2", "file") if is_stated else _GRAVITY_ANYWHERE
+    return stated_value(table, "gravity_m_s2", "file") if is_stated else _GRAVITY_ANYWHERE
+
+
+def gravity_of(table: Any) -> Estimate:
+    """Return gravity less buoyancy."""
+    plain = plain_gravity_of(table)
     if not getattr(table, "body_density_kg_m3", None):
         return plain
     value = gravity_in_air(plain.value, table.air_density_kg_m3, table.body_density_kg_m3)

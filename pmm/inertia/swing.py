@@ -6,73 +6,23 @@ Static fits give first moments, records give periods; :mod:`analysis.inertia.swi
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from analysis.inertia.lengthening import pendulum_lengthening
 from analysis.inertia.swing import SwingInertia, SwingState, model_on_swing, swing_inertia
-from analysis.inertia.swing_static import StaticResult, distance, fit_static
+from analysis.inertia.swing_static import StaticResult, distance
 from analysis.inertia.two_pivots import PivotTest, check_two_pivots
 from analysis.inertia.workflow import Step
-from analysis.uncertainty.budget import derived
-from analysis.uncertainty.estimate import Estimate, difference, exactly
+from analysis.uncertainty.estimate import difference, exactly
 from analysis.uncertainty.redundancy import Redundancy
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
 from pmm.inertia.air import without_air
 from pmm.inertia.experiment import Experiment
+from pmm.inertia.first_moment import Moment, displaced_share, first_moment, in_air
 from pmm.inertia.outcome import Finding, Outcome, StaticTest, assessed
 from pmm.inertia.sketch import about_axis
-from pmm.inertia.stated_values import given_or_none, gravity_of, stated_value
+from pmm.inertia.stated_values import given_or_none, plain_gravity_of, stated_value
 from pmm.inertia.swing_tables import StateTable, SwingTable
 from pmm.inertia.workflow import guide
-
-
-@dataclass(frozen=True)
-class Moment:
-    """A first moment about the pivot.
-
-    Attributes
-    ----------
-    estimate
-        In kg m.
-    cg
-        Distance of the centre of gravity below the pivot, m.
-    static
-        The fit to the tilts that they come from, if they do.
-    """
-
-    estimate: Estimate
-    cg: Estimate
-    static: StaticResult | None = None
-
-
-def first_moment(table: StateTable, mass: Estimate) -> Moment:
-    """Return the first moment of a state of that mass."""
-    if table.cg_below_pivot_m is not None:
-        cg = stated_value(table, "cg_below_pivot_m")
-        return Moment(derived("S", lambda cg, mass: cg * mass, "kg m", cg=cg, mass=mass), cg)
-    static = _tilts(table) if table.levers else None
-    moment = stated_value(table, "moment_kg_m") if static is None else _scaled(table, static)
-    return Moment(moment, distance(moment, mass), static)
-
-
-def _tilts(table: StateTable, deeper: float = 0.0) -> StaticResult:
-    series = [lever.series(deeper) for lever in table.levers]
-    return fit_static(series, with_offset=table.static_fit == "F2")
-
-
-def _scaled(table: StateTable, static: StaticResult) -> Estimate:
-    """Add the levers' and the inclinometer's errors, which all states that use them share."""
-    moment = static.pooled.moment
-    lever_relative = float(np.mean([lever.u_lever_m / lever.lever_m for lever in table.levers]))
-    levers = ", ".join(sorted(f"{lever.name} of {lever.lever_m:g} m" for lever in table.levers))
-    by_levers = moment.widened(moment.value * lever_relative, label=f"levers {levers}")
-    by_scale = by_levers.widened(
-        moment.value * table.u_tilt_relative, label="scale of the inclinometer"
-    )
-    deeper = _tilts(table, 1.0).pooled.moment.value - moment.value
-    drops = ", ".join(sorted(f"{lever.name} of {lever.drop_m:g} m" for lever in table.levers))
-    return by_scale.widened(deeper, label=f"drops {drops}")
 
 
 @dataclass(frozen=True)
@@ -95,7 +45,10 @@ def run(path: str) -> Outcome:
     """
     test = Experiment.of(path, SwingTable)
     table = test.table
-    states = {key: _measure(test, key) for key in _STATES if getattr(table, key) is not None}
+    states: dict[str, _MeasuredState] = {}
+    for key in _STATES:
+        if getattr(table, key) is not None:
+            states[key] = _measure(test, key, states["tare"].moment if key == "loaded" else None)
     _two_pivots(test, states)
     test.plumb()
     _model(test, states)
@@ -145,15 +98,19 @@ _WORDS = {
 _PLANES = {"pitch": Plane.VERTICAL, "yaw": Plane.HORIZONTAL}
 
 
-def _measure(test: Experiment[SwingTable], key: str) -> _MeasuredState:
+def _measure(test: Experiment[SwingTable], key: str, tare: Moment | None) -> _MeasuredState:
+    """Read a state; ``tare`` is the empty swing's moment where the model hangs on it."""
     table: StateTable = getattr(test.table, key)
     period = test.period(table.period, f"{key}.period", lengthens=pendulum_lengthening).period
-    mass, gravity = stated_value(table, "mass_kg"), gravity_of(test.table)
+    mass, gravity = stated_value(table, "mass_kg"), plain_gravity_of(test.table)
     moment = first_moment(table, mass)
     if moment.static is not None:
         series = tuple(lever.series() for lever in table.levers)
         test.statics.append(StaticTest(f"{key}.levers", series, moment.static))
         test.flags += moment.static.flags
+    displaced = displaced_share(test.table)
+    if tare is not None and displaced:
+        moment, gravity = in_air(moment, tare, mass, gravity, displaced)
     state = SwingState(period, mass, moment.estimate, gravity)
     inertia = swing_inertia(state, seed=test.table.monte_carlo_seed)
     words = _WORDS[key]
@@ -205,6 +162,7 @@ def _model(test: Experiment[SwingTable], states: Mapping[str, _MeasuredState]) -
         states["tare"].state,
         loaded.state,
         mass,
+        displaced=displaced_share(table),
         seed=table.monte_carlo_seed + 10,
     )
     axis = model.axis

@@ -58,14 +58,46 @@ def test_air_of_a_compound_pendulum(tmp_path: Path) -> None:
 
 
 def test_air_of_a_model_on_the_swing(tmp_path: Path) -> None:
-    mass, gyradius, depth, scale = 30.0, 0.6, 0.8, G * (1.0 - RATIO)
-    tare = timed(40.0 / (3.0 * scale))
-    total = timed((40.0 + mass * in_air(gyradius, depth)) / ((3.0 + mass * depth) * scale))
+    """The air bears the model, not the swing."""
+    mass, gyradius, depth = 30.0, 0.6, 0.8
+    tare = timed(40.0 / (3.0 * G))
+    righting = 3.0 + mass * depth * (1.0 - RATIO)
+    total = timed((40.0 + mass * in_air(gyradius, depth)) / (righting * G))
     state = "mass_kg = 42.0\nmoment_kg_m = {}\nu_moment_kg_m = 1e-4\nperiod = {}\n"
     text = AIR + f"[tare]\n{state.format(3.0, tare)}[loaded]\n{state.format(27.0, total)}"
     outcome = swing.run(write(tmp_path, text + f"[model]\nmass_kg = {mass}\n"))
     assert value(outcome, "k_pitch_m") == pytest.approx(gyradius, rel=1e-4)
     assert value(outcome, "k_pitch_in_air_m") > 1.01 * gyradius
+
+
+@pytest.mark.parametrize("tilted", [False, True])
+def test_air_bears_the_model_once(tmp_path: Path, tilted: bool) -> None:
+    """Tilts tell the moment in air, a stated one is that of the masses."""
+    ratio, tare, mass, gyradius, depth = 1.2 / 250.0, 21.0, 60.0, 1.1, 0.8
+    righting = {"tare": tare, "loaded": tare + mass * depth * (1.0 - ratio)}
+    inertia = {"tare": 45.0, "loaded": 45.0 + mass * (gyradius**2 + depth**2)}
+    weights, text = [0.0, 2.0, 4.0], "air_density_kg_m3 = 1.2\nbody_density_kg_m3 = 250.0\n"
+    for key, kilograms in (("tare", 42.0), ("loaded", 42.0 + mass)):
+        period = timed(inertia[key] / (righting[key] * G))
+        text += f"[{key}]\nmass_kg = {kilograms}\nperiod = {period}\n"
+        if tilted:
+            tilts = [math.atan(weight * 0.4 / righting[key]) for weight in weights]
+            row = f'name = "C", lever_m = 0.4, weight_kg = {weights}, tilt_rad = {tilts}'
+            text += f"levers = [{{ {row} }}]\n"
+        else:
+            text += f"moment_kg_m = {tare if key == 'tare' else tare + mass * depth}\n"
+    outcome = swing.run(write(tmp_path, f"{text}[model]\nmass_kg = {mass}\n"))
+    about_cg = inertia["loaded"] - (tare + mass * depth) ** 2 / (42.0 + mass)
+    expected = {
+        "tare_i_pivot_kg_m2": 45.0,
+        "loaded_i_pivot_kg_m2": inertia["loaded"],
+        "loaded_i_cg_kg_m2": about_cg,
+        "loaded_cg_below_pivot_m": (tare + mass * depth) / (42.0 + mass),
+        "cg_below_pivot_m": depth,
+        "i_pitch_kg_m2": mass * gyradius**2,
+        "k_pitch_m": gyradius,
+    }
+    assert {name: value(outcome, name) for name in expected} == pytest.approx(expected, rel=1e-5)
 
 
 def test_air_of_yaw_by_period_and_by_ratio(tmp_path: Path) -> None:
