@@ -142,7 +142,7 @@ def _scatter_flags(subject: str, scatter: float, fit_u: float) -> tuple[Flag, ..
     if fit_u <= 0.0 or scatter < 3.0 * fit_u:
         return ()
     message = (
-        f"{subject}: runs scatter by {scatter:.3g}, {scatter / fit_u:.3g} times what each fit "
+        f"{subject}: runs scatter by {scatter:.3g}, {scatter / fit_u:.3g} times what each "
         "claims; the scatter is what counts (release, stiction, temperature, amplitude)"
     )
     return (Flag("scatter_exceeds_fit", Severity.NOTE, message),)

@@ -1,14 +1,14 @@
 """Periods by stopwatch: times of counted swings."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from analysis.inertia.repeats import RepeatedValue
-from analysis.uncertainty.estimate import Estimate, joint
-from analysis.uncertainty.redundancy import scattered_fit
+from analysis.inertia.repeats import KnownScatter, RepeatedValue, combine_runs
+from analysis.uncertainty.estimate import Estimate
 from hardware.description.errors import DataError
+from hardware.description.flags import Flag, Severity
 
 REACTION_S = 0.1  # standard deviation of a person's start and stop together
 
@@ -25,12 +25,18 @@ def stopwatch_period(
     readings: tuple[StopwatchReading, ...],
     *,
     reaction_s: float = REACTION_S,
+    known_scatter: KnownScatter | None = None,
     subject: str = "stopwatch",
 ) -> RepeatedValue:
     """Return the period of one swing.
 
     Several readings give their mean and the scatter between them; a single one rests on the
-    person's reaction.
+    scatter known from earlier, or else on the person's reaction and is flagged.
+
+    Parameters
+    ----------
+    known_scatter
+        Of the periods of single readings, s; see :func:`~analysis.inertia.repeats.combine_runs`.
 
     Raises
     ------
@@ -53,34 +59,15 @@ def stopwatch_period(
         Estimate.of(float(period), reaction_s / swing_count, "s")
         for period, swing_count in zip(periods, swings, strict=True)
     ]
-    count = len(reading_periods)
-    mean = Estimate(joint(reading_periods).mapped(np.full((1, count), 1.0 / count)), "s")
-    if count < 2:
-        return RepeatedValue(mean, (usual,), math.nan)
-    names = [f"reading {k}" for k in range(1, count + 1)]
-    agreement = scattered_fit(
-        np.ones((count, 1)),
-        periods,
-        subject=subject,
-        results=("period_s",),
-        data=names,
-    )
-    reactions = np.array([period.uncertainty for period in reading_periods])
-    chi_squared = float((((periods - mean.value) / reactions) ** 2).sum())
-    scatter = float(periods.std(ddof=1))
-    between = scatter / math.sqrt(periods.size)
-    estimate, wide, cause = mean, 1.0, ""
-    if between > mean.uncertainty:
-        estimate = Estimate.of(mean.value, between, "s", float(periods.size - 1))
-        wide, cause = between / mean.uncertainty, "the scatter between readings"
-    agreement = replace(agreement, chi_squared=chi_squared, widening=wide, cause=cause)
-    return RepeatedValue(
-        estimate,
-        tuple(periods.tolist()),
-        scatter,
-        agreement.flags(),
-        (agreement,),
-    )
+    if len(reading_periods) < 2 and known_scatter is None:
+        message = (
+            f"{subject}: one reading only; a reaction ({reaction_s:.2g} s) stands in for "
+            "the scatter between releases: repeat the release, or give known_scatter_s"
+        )
+        flag = Flag("single_run", Severity.WARNING, message)
+        return RepeatedValue(reading_periods[0], (usual,), math.nan, (flag,))
+    names = [f"reading {k}" for k in range(1, len(reading_periods) + 1)]
+    return combine_runs(reading_periods, known_scatter=known_scatter, subject=subject, names=names)
 
 
 def _check_readings(readings: tuple[StopwatchReading, ...]) -> None:

@@ -26,12 +26,12 @@ class PeriodSource:
         Text files of light gates' edges, one per release, and their columns.
     remove_modulation
         Whether to take the sway's modulation out of a single gate's periods (eq 14); the period is
-        then that at mid-record, not at no amplitude.
+        then that at the record's mean amplitude, not at none.
     stopwatch, reaction_s
         Counted swings, and the standard deviation of a person's start and stop together.
     amplitude_deg, u_amplitude_deg
-        Mean amplitude of the swings that were counted: what geometry does to their period is taken
-        out.
+        Mean amplitude of the swings that were counted, or freed of their modulation: what geometry
+        does to their period is taken out.
     period_s, u_period_s, period_degrees_of_freedom
         Known otherwise.
     known_scatter_s, known_scatter_degrees_of_freedom
@@ -61,8 +61,12 @@ class PeriodSource:
         """Exactly one way; a period known otherwise has an uncertainty."""
         if "inclinometer_radius_m" in table and "records" not in table:
             yield "inclinometer_radius_m", "is for records; there are none"
-        if "amplitude_deg" in table and "stopwatch" not in table:
-            yield "amplitude_deg", "is for a stopwatch; whatever else tells it by itself"
+        is_mean = "stopwatch" in table or table.get("remove_modulation")
+        if "amplitude_deg" in table and not is_mean:
+            yield (
+                "amplitude_deg",
+                "is for a stopwatch or remove_modulation; whatever else tells it by itself",
+            )
         yield from one_of(table, "records", "gates", "stopwatch", "period_s")
         if "period_s" in table and not table.get("u_period_s"):
             yield (

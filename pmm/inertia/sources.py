@@ -102,16 +102,19 @@ def read_period(
             "give each period by itself"
         )
     if source.gates:
-        return _from_gates(job, source, where)
+        return _from_gates(job, source, where, lengthens)
     if source.stopwatch:
-        timed = stopwatch_period(source.stopwatch, reaction_s=source.reaction_s, subject=where)
-        how = f"stopwatch, {len(timed.runs)} readings"
-        period, flags = _of_small_swings(job, timed.estimate, source, where, lengthens)
-        factor = period.value / timed.estimate.value
-        runs = tuple(factor * run for run in timed.runs)
+        timed = stopwatch_period(
+            source.stopwatch,
+            reaction_s=source.reaction_s,
+            known_scatter=source.known_scatter,
+            subject=where,
+        )
+        small = _of_small_swings(job, timed, source, where, lengthens)
+        how = f"stopwatch, {len(small.runs)} reading{'s' if len(small.runs) > 1 else ''}"
         return PeriodRuns(
-            where, how, (period,), (runs,), flags=(*timed.flags, *flags),
-            redundancy=timed.redundancy,
+            where, how, (small.estimate,), (small.runs,), flags=small.flags,
+            redundancy=small.redundancy,
         )  # fmt: skip
     value = source.period_s if source.period_s is not None else 0.0
     freedom = source.period_degrees_of_freedom or float("inf")
@@ -120,32 +123,36 @@ def read_period(
 
 def _of_small_swings(
     job: Job[Any],
-    timed: Estimate,
+    timed: RepeatedValue,
     source: PeriodSource,
     where: str,
     lengthens: Lengthening | None,
-) -> tuple[Estimate, tuple[Flag, ...]]:
-    """Return a stopwatch's period without what geometry does at the amplitude that is stated."""
+) -> RepeatedValue:
+    """Return a mean period of some swings without what geometry does at the amplitude stated."""
     if lengthens is None:
         if source.amplitude_deg is not None:
             raise ConfigurationError(
                 f"{job.path}: {where}.amplitude_deg: what an amplitude does to this period is not "
                 "known; leave it out and count small swings, or take records"
             )
-        return timed, ()
-    powers = lengthens(timed.value)
+        return timed
+    period = timed.estimate
+    powers = lengthens(period.value)
     if source.amplitude_deg is None:
         per_cent = 100.0 * (float(longer(powers, np.array([math.radians(_WIDE_DEG)]))[0]) - 1.0)
         message = (
-            f"{where}: the counted swings are taken for small ones; of {_WIDE_DEG:g} deg their "
-            f"period is {per_cent:.2g} % long: state amplitude_deg, their mean amplitude"
+            f"{where}: the swings are taken for small ones; of {_WIDE_DEG:g} deg their period is "
+            f"{per_cent:.2g} % long: state amplitude_deg, their mean amplitude"
         )
-        return timed, (Flag("amplitude_unknown", Severity.NOTE, message),)
+        flag = Flag("amplitude_unknown", Severity.NOTE, message)
+        return replace(timed, flags=(*timed.flags, flag))
     stated = math.radians(source.amplitude_deg)
     off = math.radians(source.u_amplitude_deg)
     ratio, beyond = (float(longer(powers, np.array([size]))[0]) for size in (stated, stated + off))
-    small = timed.following(timed.value / ratio, 1.0 / ratio)
-    return small.widened(small.value * (beyond / ratio - 1.0)) if off else small, ()
+    small = period.following(period.value / ratio, 1.0 / ratio)
+    if off:
+        small = small.widened(small.value * (beyond / ratio - 1.0))
+    return replace(timed, estimate=small, runs=tuple(run / ratio for run in timed.runs))
 
 
 def _from_records(
@@ -205,37 +212,38 @@ def _ratio(runs: Sequence[RecordAnalysis], where: str) -> Estimate | None:
     return combine_runs(ratios, subject=f"{where}, ratio").estimate
 
 
-def _from_gates(job: Job[Any], source: PeriodSource, where: str) -> PeriodRuns:
-    fits, flags = [], []
+def _from_gates(
+    job: Job[Any], source: PeriodSource, where: str, lengthens: Lengthening | None
+) -> PeriodRuns:
+    fits: list[tuple[Passages, PassageFit]] = []
+    flags: list[Flag] = []
     for name in source.gates:
         path = job.path_beside(name)
         events = read_gate_events(path, time=source.time_column, gates=source.gate_columns)
         gate_passages = passages(events)
         fits.append((gate_passages, fit_passages(gate_passages)))
         flags += [*events.flags, *gate_passages.flags]
-    redundancy: tuple[Redundancy, ...] = ()
     periods = [
         _demodulated(gate_passages) if source.remove_modulation else fit.period
         for gate_passages, fit in fits
     ]
     if len(periods) == 1 and source.known_scatter is None:
-        estimate, flag = _single_gate_run(*fits[0], periods[0], where)
-        flags.append(flag)
+        joined = _single_gate_run(*fits[0], periods[0], where)
     else:
         joined = combine_runs(
             periods, known_scatter=source.known_scatter, subject=where, names=source.gates
         )
-        estimate, flags, redundancy = joined.estimate, [*flags, *joined.flags], joined.redundancy
-    single = tuple(period.value for period in periods)
+    if source.remove_modulation:
+        joined = _of_small_swings(job, joined, source, where, lengthens)
     how = f"light gates, {len(fits)} run{'s' if len(fits) > 1 else ''}"
     return PeriodRuns(
         where,
         how,
-        (estimate,),
-        (single,),
+        (joined.estimate,),
+        (joined.runs,),
         gates=tuple(fits),
-        flags=tuple(flags),
-        redundancy=redundancy,
+        flags=(*flags, *joined.flags),
+        redundancy=joined.redundancy,
     )
 
 
@@ -250,7 +258,7 @@ def _demodulated(gate_passages: Passages) -> Estimate:
 
 def _single_gate_run(
     gate_passages: Passages, fit: PassageFit, period: Estimate, where: str
-) -> tuple[Estimate, Flag]:
+) -> RepeatedValue:
     """Let the scatter between a run's parts stand in for that between runs, undivided."""
     parts = np.array_split(np.arange(gate_passages.number.size), _PARTS)
     number, late_s = gate_passages.number, fit.residual_s
@@ -261,4 +269,5 @@ def _single_gate_run(
         f"{where}: one run only; the scatter between its {_PARTS} parts ({spread:.2g} s) stands in "
         "for that between runs: repeat the release, or give known_scatter_s"
     )
-    return estimate, Flag("single_run", Severity.WARNING, message)
+    flag = Flag("single_run", Severity.WARNING, message)
+    return RepeatedValue(estimate, (period.value,), spread, (flag,))

@@ -252,6 +252,9 @@ def test_stopwatch() -> None:
     single = stopwatch_period((StopwatchReading(20, 56.92),)).estimate
     assert single.value == pytest.approx(2.846)
     assert single.uncertainty == pytest.approx(0.005)
+    assert [flag.code for flag in stopwatch_period((StopwatchReading(20, 56.92),)).flags] == [
+        "single_run"
+    ]
     several = stopwatch_period(tuple(StopwatchReading(20, s) for s in (56.9, 57.6, 56.4, 57.3)))
     assert several.estimate.degrees_of_freedom == pytest.approx(3.0)
     (agreement,) = several.redundancy
@@ -264,6 +267,20 @@ def test_stopwatch() -> None:
         stopwatch_period((StopwatchReading(2, 5.0),))
     with pytest.raises(DataError, match="miscounted"):
         stopwatch_period(tuple(StopwatchReading(20, s) for s in (56.9, 56.8, 59.8)))
+
+
+def test_stopwatch_with_a_scatter_known_from_earlier() -> None:
+    known = KnownScatter(0.03, 8.0)
+    single = stopwatch_period((StopwatchReading(20, 56.92),), known_scatter=known)
+    assert single.estimate.uncertainty == pytest.approx(0.03)
+    assert "single_run" not in {flag.code for flag in single.flags}
+    times = (56.9, 57.6, 56.4, 57.3)
+    several = stopwatch_period(
+        tuple(StopwatchReading(20, s) for s in times), known_scatter=known
+    ).estimate
+    pooled = math.sqrt((3.0 * float(np.var(times, ddof=1)) / 400.0 + 8.0 * 0.03**2) / 11.0)
+    assert several.uncertainty == pytest.approx(pooled / 2.0)
+    assert several.degrees_of_freedom == pytest.approx(11.0)
 
 
 def test_decay_needs_amplitudes() -> None:

@@ -1,4 +1,4 @@
-"""Periods from light gates and two-mode records, against the motions they were made of."""
+"""Periods from light gates, stopwatches and records, against the motions they were made of."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from analysis.inertia.double_pendulum import mode_periods
-from pmm.inertia import bifilar
+from pmm.inertia import bifilar, pendulum
 
 G = 9.81
 LINE_M, HALF_SPACING_M = 2.0, 0.5
@@ -50,6 +50,18 @@ def test_one_gate_with_sway(more: str, within: float, tmp_path: Path) -> None:
     assert runs.period.value == pytest.approx(YAW_S, rel=within)
     assert abs(runs.period.value - YAW_S) < 3.0 * runs.period.uncertainty
     assert "single_run" in {flag.code for flag in outcome.flags}
+
+
+def test_a_known_scatter_holds_for_a_stopwatch(tmp_path: Path) -> None:
+    known = "known_scatter_s = 0.05\n"
+    source = "[period]\nstopwatch = [{ swings = 50, duration_s = 100.0 }]\n"
+    found = []
+    for more in (known, ""):
+        (tmp_path / "job.toml").write_text(f"gravity_m_s2 = {G}\n{source}{more}")
+        found.append(pendulum.run(str(tmp_path / "job.toml")))
+    assert [one.periods[0].period.uncertainty for one in found] == pytest.approx([0.05, 0.1 / 50.0])
+    codes = [{flag.code for flag in one.flags} for one in found]
+    assert ["single_run" in one for one in codes] == [False, True]
 
 
 @pytest.mark.slow

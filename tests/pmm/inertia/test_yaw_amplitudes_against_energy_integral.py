@@ -73,6 +73,35 @@ def test_the_frames_swings_are_taken_to_small_ones(tmp_path: Path) -> None:
     assert result["workflow_check_kg_m2"] == pytest.approx(40.0, rel=2e-5)
 
 
+def gate_file(path: Path, period_s: float) -> None:
+    """Write the edges of one gate that sees yaw that does not die, and some sway."""
+    t = np.arange(0.0, 400.0, 1e-3)
+    sway_s = 2.0 * math.pi * math.sqrt(LINE / G)
+    y = np.cos(2.0 * np.pi * t / period_s) + 0.02 * np.cos(2.0 * np.pi * t / sway_s + 1.0)
+    edges = []
+    for side in (-0.02, 0.02):
+        at = np.flatnonzero(np.signbit(y[1:] - side) != np.signbit(y[:-1] - side))
+        edges.append(t[at] + 1e-3 * (side - y[at]) / (y[at + 1] - y[at]))
+    rows = [f"{a:.7f},{(k + 1) % 2}" for k, a in enumerate(np.sort(np.concatenate(edges)))]
+    path.write_text("\n".join(["Time,State", *rows]) + "\n")
+
+
+@pytest.mark.parametrize("stated", [True, False])
+def test_a_period_without_modulation_is_of_its_amplitude(stated: bool, tmp_path: Path) -> None:
+    gyradius_m = 0.6
+    gate_file(tmp_path / "gate.csv", exact_period_s(gyradius_m, math.radians(WIDE_DEG)))
+    more = f"amplitude_deg = {WIDE_DEG}\n" if stated else ""
+    path = tmp_path / "job.toml"
+    path.write_text(
+        f'{HEAD}[suspensions.yaw]\ngates = ["gate.csv"]\ngate_columns = ["State"]\n'
+        f"remove_modulation = true\n{more}"
+    )
+    outcome = bifilar.run(str(path))
+    found = next(one.estimate.value for one in outcome.findings if one.name == "k_yaw_m")
+    assert ("amplitude_unknown" in {flag.code for flag in outcome.flags}) is not stated
+    assert (found == pytest.approx(gyradius_m, rel=5e-5)) is stated
+
+
 SMALL = "{ period_s = 4.0, u_period_s = 0.001 }"
 STATED = "stopwatch = [{ swings = 50, duration_s = 100.0 }]\namplitude_deg = 5.0\n"
 
