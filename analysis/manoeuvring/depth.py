@@ -93,25 +93,38 @@ class SubmergedBody:
 
     @property
     def index(self) -> FloatArray:
-        """G_v = 1 - M_w (Z_q + m) / (Z_w (M_q - m x_G)): above 0 stable at every high speed."""
+        """G_v = 1 - M_w (Z_q + m) / (Z_w (M_q - m x_G)): above 0 a damped body is stable when fast.
+
+        Damped is one with Z_w and M_q below 0.
+        """
         (z_w, z_q), (m_w, m_q) = self._slope
         return np.asarray(1.0 - m_w * z_q / (z_w * m_q))
 
     @property
-    def critical_speed_m_s(self) -> FloatArray:
-        """Speed at which an oscillation in depth neither grows nor dies; infinite without any.
+    def stable_speeds_m_s(self) -> tuple[FloatArray, FloatArray]:
+        """Ends of the speeds between which a disturbance dies out; NaN where there are none.
 
-        Routh's condition on ``A s^3 + U b s^2 + (U^2 c + k) s + U d``, solved for U.
+        Routh's conditions on ``s^3 + U b s^2 + (U^2 c + k) s + U d``: b and d are not below 0 and
+        ``b (U^2 c + k) > d``, which makes the term in s positive too.
         """
         (e11, e12), (e21, e22) = self._inertia
         (z_w, z_q), (m_w, m_q) = self._slope
         determinant = e11 * e22 - e12 * e21
-        b = e12 * m_w + e21 * z_q - e11 * m_q - e22 * z_w
-        c = z_w * m_q - z_q * m_w
-        k, d = self.righting_n_m * e11, -self.righting_n_m * z_w
+        b = (e12 * m_w + e21 * z_q - e11 * m_q - e22 * z_w) / determinant
+        c = (z_w * m_q - z_q * m_w) / determinant
+        k, d = self.righting_n_m * e11 / determinant, -self.righting_n_m * z_w / determinant
         with np.errstate(divide="ignore", invalid="ignore"):
-            squared = (determinant * d - b * k) / (b * c)
-        return np.asarray(np.where(squared > 0.0, np.sqrt(np.maximum(squared, 0.0)), np.inf))
+            crossing = np.sqrt((d - b * k) / (b * c))
+        is_damped, at_rest, at_speed = (b > 0.0) & (d >= 0.0), b * k > d, c > 0.0
+        low = np.where(at_rest, 0.0, np.where(at_speed, crossing, np.nan))
+        high = np.where(at_speed, np.inf, np.where(at_rest, crossing, np.nan))
+        return np.where(is_damped, low, np.nan), np.where(is_damped, high, np.nan)
+
+    @property
+    def critical_speed_m_s(self) -> FloatArray:
+        """Speed at which stability begins or ends, by an oscillation; infinite without any."""
+        low, high = self.stable_speeds_m_s
+        return np.asarray(np.where(low > 0.0, low, np.where(np.isnan(high), np.inf, high)))
 
     def root(self, speed_m_s: float) -> FloatArray:
         """Return the largest real part of the roots of w, q and theta, 1/s; below 0 stable."""

@@ -16,13 +16,20 @@ from pmm.manoeuvre.ship_file import SubmergedFile
 
 @dataclass(frozen=True)
 class DepthKeeping:
-    """What was found of a body, with an interval each."""
+    """What was found of a body, with an interval each.
+
+    Attributes
+    ----------
+    stable_m_s
+        Speeds between which it is stable; NaN where it is at none.
+    """
 
     file: SubmergedFile
     level: float
     draws: int
     quantities: tuple[ManoeuvreQuantity, ...]
     doubts: tuple[str, ...]
+    stable_m_s: tuple[float, float]
 
 
 def depth_keeping(file: SubmergedFile, trials: int, seed: int, level: float) -> DepthKeeping:
@@ -45,7 +52,9 @@ def depth_keeping(file: SubmergedFile, trials: int, seed: int, level: float) -> 
         quantities.append(
             quantity_of(f"planes {name}", "reversal speed", "m/s", speeds, level, knots)
         )
-    return DepthKeeping(file, level, trials, tuple(quantities), doubts_of_body(file, body))
+    low, high = (float(speeds[0]) for speeds in body.stable_speeds_m_s)
+    doubts = doubts_of_body(file, body)
+    return DepthKeeping(file, level, trials, tuple(quantities), doubts, (low, high))
 
 
 def body_of(file: SubmergedFile, trials: int, seed: int) -> SubmergedBody:

@@ -136,7 +136,7 @@ def _depth(keeping: DepthKeeping) -> tuple[Content, ...]:
         Text(head),
         _doubts(keeping),
         _table(keeping),
-        Text(tuple(_stability_sentences(keeping))),
+        Text((_stability_sentence(keeping),)),
         _at(keeping),
     )
 
@@ -153,14 +153,13 @@ def _at(result: Prediction | DepthKeeping) -> Table[float]:
     return conditions_table([file.speed_m_s], ship, file.water)
 
 
-def _stability_sentences(keeping: DepthKeeping) -> Iterator[str]:
-    index, critical = keeping.quantities[:2]
-    if not math.isfinite(critical.value):
-        yield "stable at every speed" if index.value > 0.0 else "stable at no speed"
-    elif index.value < 0.0:
-        yield f"stable below {critical.value:.4g} m/s, where its weight rights it; not above"
-    else:
-        yield f"stable above {critical.value:.4g} m/s alone"
+def _stability_sentence(keeping: DepthKeeping) -> str:
+    low, high = keeping.stable_m_s
+    if math.isnan(low):
+        return "stable at no speed"
+    if math.isfinite(high):
+        return f"stable below {high:.4g} m/s, where its weight rights it; not above"
+    return f"stable above {low:.4g} m/s alone" if low > 0.0 else "stable at every speed"
 
 
 def _table(result: Prediction | DepthKeeping) -> Table[ManoeuvreQuantity]:

@@ -25,14 +25,20 @@ def body(**other: float) -> SubmergedBody:
     return SubmergedBody(L, RHO, M, I_Y, X_G, M * G * BG, values)
 
 
-def rates(state: np.ndarray, speed: float, delta: float = 0.0) -> np.ndarray:
+def rates(
+    state: np.ndarray,
+    speed: float,
+    delta: float = 0.0,
+    c: dict[str, float] = PRIME,
+    righting_n_m: float = M * G * BG,
+) -> np.ndarray:
     """Gertler and Hagen's equations for small motions, written out: w, q, theta, depth."""
     w, q, theta, _ = state
-    c, half = PRIME, 0.5 * RHO
+    half = 0.5 * RHO
     z = half * L**2 * speed * c["Z_w"] * w + half * L**3 * speed * c["Z_q"] * q
     z += half * L**2 * speed**2 * Z_D * delta + M * speed * q
     m = half * L**3 * speed * c["M_w"] * w + half * L**4 * speed * c["M_q"] * q
-    m += half * L**3 * speed**2 * M_D * delta - M * X_G * speed * q - M * G * BG * theta
+    m += half * L**3 * speed**2 * M_D * delta - M * X_G * speed * q - righting_n_m * theta
     left = np.array(
         [
             [M - half * L**3 * c["Z_wdot"], -M * X_G - half * L**4 * c["Z_qdot"]],
@@ -65,6 +71,33 @@ def test_a_body_that_is_stable_at_every_speed_has_none() -> None:
     assert stable.index[0] > 0.0 > body().index[0]
     assert np.isinf(stable.critical_speed_m_s[0])
     assert all(stable.root(speed)[0] < 0.0 for speed in (0.5, 5.0, 50.0))
+
+
+SPEEDS = (0.02, 0.1, 0.4, 1.0, 2.5, 6.0, 15.0, 40.0, 100.0)
+
+
+def test_no_growing_disturbance_is_called_stable() -> None:
+    """By the eigenvalues of the written-out equations, of bodies of any sign and righting."""
+    rng = np.random.default_rng(7)
+    kinds = set()
+    for _ in range(300):
+        signs = {name: float(rng.choice([-1.0, 1.0, 1.0])) for name in ("Z_w", "M_w", "M_q", "Z_q")}
+        other = {name: sign * PRIME[name] * rng.uniform(0.2, 2.0) for name, sign in signs.items()}
+        righting = M * G * BG * float(rng.choice([-1.0, 1.0, 1.0]))
+        values = {name: np.array([value]) for name, value in (PRIME | other).items()}
+        low, high = SubmergedBody(L, RHO, M, I_Y, X_G, righting, values).stable_speeds_m_s
+        for speed in SPEEDS:
+            columns = [rates(one, speed, 0.0, PRIME | other, righting)[:3] for one in np.eye(4)[:3]]
+            grows = float(np.linalg.eigvals(np.array(columns).T).real.max()) > 0.0
+            assert grows != bool(low[0] < speed < high[0]), (other, righting, speed)
+        kinds.add((bool(low[0] > 0.0), bool(np.isinf(high[0])), bool(np.isnan(low[0]))))
+    # at every speed, below one, above one, at none
+    assert kinds == {
+        (False, True, False),
+        (False, False, False),
+        (True, True, False),
+        (False, False, True),
+    }
 
 
 def test_a_plane_reverses_where_its_depth_rate_changes_sign() -> None:
