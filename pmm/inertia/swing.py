@@ -11,7 +11,7 @@ from analysis.inertia.swing import SwingInertia, SwingState, model_on_swing, swi
 from analysis.inertia.swing_static import StaticResult, distance
 from analysis.inertia.two_pivots import PivotTest, check_two_pivots
 from analysis.inertia.workflow import Step
-from analysis.uncertainty.estimate import difference, exactly
+from analysis.uncertainty.estimate import Estimate, difference, exactly
 from analysis.uncertainty.redundancy import Redundancy
 from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
@@ -86,6 +86,8 @@ def _lever_notes(measured: _MeasuredState, static: StaticResult) -> Iterator[str
         )
 
 
+_APART = 3.0  # joint standard uncertainties by which masses may differ
+_ROUNDING = 1e-9  # of masses that are stated to be exact
 _STATES = ("tare", "loaded", "second_pivot", "check", "tare_again")
 _DRAWN = ("tare", "loaded")
 _WORDS = {
@@ -166,7 +168,7 @@ def _model(test: Experiment[SwingTable], states: Mapping[str, _MeasuredState]) -
         seed=table.monte_carlo_seed + 10,
     )
     axis = model.axis
-    test.flags += result.flags
+    test.flags += [*result.flags, *_mass_flags(states["tare"].state.mass, loaded.state.mass, mass)]
     gyradius = without_air(table, result.gyradius, depth=result.cg_below_pivot.budget.result)
     in_air = "_in_air" if table.entrained_air is not None else ""
     with_air = ", with its air" if in_air else ""
@@ -188,6 +190,19 @@ def _model(test: Experiment[SwingTable], states: Mapping[str, _MeasuredState]) -
         test.findings.append(Finding("cg_z_m", "model: CG below the struts' midpoint", cg_z))
     parts = (result.cg_below_pivot, result.about_cg, result.gyradius)
     test.weigh({axis: gyradius.result}, [part.budget for part in parts], result.flags, cg_z)
+
+
+def _mass_flags(tare: Estimate, loaded: Estimate, model: Estimate) -> Iterator[Flag]:
+    """Flag a loaded swing whose mass is not the empty one's and the model's."""
+    over = difference(difference(loaded, tare), model)
+    limit = max(_APART * over.uncertainty, _ROUNDING * loaded.value)
+    if abs(over.value) > limit:
+        message = (
+            f"loaded.mass_kg = {loaded.value:g} kg is {over.value:+.3g} kg off tare.mass_kg = "
+            f"{tare.value:g} kg and model.mass_kg = {model.value:g} kg together (limit "
+            f"{limit:.2g} kg): loaded is all that hangs, the model included"
+        )
+        yield Flag("masses_disagree", Severity.WARNING, message)
 
 
 _STEPS = {

@@ -158,6 +158,29 @@ k_pitch_m = 0.2
     assert abs(loose.uncertainty / whole.uncertainty - 1.0) > 0.2
 
 
+@pytest.mark.parametrize(
+    ("loaded_kg", "u_kg", "told"),
+    [(72.0, 0.0, False), (72.05, 0.0, True), (72.05, 0.02, False), (72.05, 0.009, True)],
+)
+def test_masses_that_contradict_each_other_are_named(
+    loaded_kg: float, u_kg: float, told: bool, tmp_path: Path
+) -> None:
+    """By hand: the joint u of three masses is 1.73 u, the limit three times that."""
+    stated = "moment_kg_m = {}\nu_moment_kg_m = 1e-3\nperiod = {}\nmass_kg = {}\nu_mass_kg = {}\n"
+    tare_s, loaded_s = (2.0 * math.pi * math.sqrt(i / (G * s)) for i, s in ((40, 3), (70, 27)))
+    outcome = swing.run(
+        write(
+            tmp_path,
+            f"[tare]\n{stated.format(3.0, timed(tare_s), 42.0, u_kg)}"
+            f"[loaded]\n{stated.format(27.0, timed(loaded_s), loaded_kg, u_kg)}"
+            f"[model]\nmass_kg = 30.0\nu_mass_kg = {u_kg}\n",
+        )
+    )
+    messages = [flag.message for flag in outcome.flags if flag.code == "masses_disagree"]
+    assert len(messages) == told
+    assert all("42 kg and model.mass_kg = 30 kg" in message for message in messages)
+
+
 def test_what_lever_and_inclinometer_add_is_common_to_both_states(tmp_path: Path) -> None:
     mass, tare, total, lever, tilt = 30.0, 3.0, 27.0, 0.002, 0.003
     tare_s, loaded_s = (2.0 * math.pi * math.sqrt(i / (G * s)) for i, s in ((40, 3), (70, 27)))
