@@ -60,10 +60,12 @@ def run(path: str) -> Outcome:
 
 
 def _air_notes(table: BifilarTable, gyradii: Mapping[str, Estimate]) -> Iterator[str]:
-    """Say which gyradii still have their air in them."""
+    """Say which results still have their air in them."""
     axes = [axis for axis in ("pitch", "roll") if axis in gyradii]
+    if table.tare is not None:
+        axes.append("the guided workflow's inertias")
     if table.entrained_air is not None and axes:
-        yield f"entrained air is taken off yaw only; {' and '.join(axes)} still have theirs"
+        yield f"entrained air is taken off yaw gyradii only; {' and '.join(axes)} still have theirs"
 
 
 def _plane(gyradii: Mapping[str, Estimate]) -> Plane | None:

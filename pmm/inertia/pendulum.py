@@ -14,7 +14,7 @@ from analysis.inertia.record import damping_of
 from analysis.uncertainty.estimate import Estimate
 from analysis.uncertainty.monte_carlo import Assessment, assess
 from hardware.description.oscillator import Plane
-from pmm.inertia.air import air_rules, without_air
+from pmm.inertia.air import air_rules, period_without_air, without_air
 from pmm.inertia.experiment import Experiment
 from pmm.inertia.hanging import hanging_rules
 from pmm.inertia.job_table import JobTable
@@ -124,22 +124,27 @@ def _on_axis(test: Experiment[PendulumJob]) -> _Swung:
     first = _period(test)
     if table.second is None:
         depth = stated_value(table, "depth_m")
-        gyradius = compound_pendulum(first, depth, gravity, seed=seed)
+        in_air = compound_pendulum(first, depth, gravity, seed=seed)
+        gyradius = without_air(table, in_air, depth=depth, seed=seed + 2)
     else:
         second = test.period(
             table.second.period, "second.period", lengthens=pendulum_lengthening
         ).period
         apart = stated_value(table.second, "apart_m")
-        below, gyradius = lamboley(first, second, apart, gravity, seed=seed)
+        below, in_air = lamboley(first, second, apart, gravity, seed=seed)
+        gyradius = in_air
+        if table.entrained_air is not None:
+            first, second = (period_without_air(table, period) for period in (first, second))
+            below, gyradius = lamboley(first, second, apart, gravity, seed=seed)
+            gyradius = without_air(table, gyradius, delayed="coefficient", seed=seed + 2)
         depth = below.budget.result
         test.findings.append(assessed("depth_m", "CG below the first axis", below))
     name, words = f"k_{table.axis}_m", f"{table.axis} gyradius"
     apart_m = None if table.second is None else table.second.apart_m
     test.sketches.append(about_axis(table.name, {"body": depth.value}, {}, apart_m))
     if table.entrained_air is not None:
-        in_air = assessed(f"k_{table.axis}_in_air_m", f"{words}, with its air", gyradius)
-        test.findings.append(in_air)
-        gyradius = without_air(table, gyradius, depth=depth, seed=seed + 2)
+        name_in_air = f"k_{table.axis}_in_air_m"
+        test.findings.append(assessed(name_in_air, f"{words}, with its air", in_air))
     test.findings.append(assessed(name, words, gyradius))
     mass = given_or_none(table.model, "mass_kg", "model")
     if mass is not None:

@@ -86,7 +86,7 @@ def hang(job: Job[BifilarTable], table: SuspensionTable) -> SuspensionResult:
             yaw_slower=table.beats.yaw_slower,
         )
         by_beats = yaw_off_lines(table, _share(job, table), by_beats, by_sway=True, seed=4)
-        assessments["yaw by beats"] = without_air(job.table, by_beats, by_sway=True)
+        assessments["yaw by beats"] = without_air(job.table, by_beats, delayed="sway_coefficient")
     _double_pendulum(job, table, where, (yaw, sway), assessments, periods, flags)
     flags += [flag for runs in periods for flag in runs.flags]
     return SuspensionResult(table, yaw, assessments, tuple(periods), tuple(flags))
@@ -156,7 +156,9 @@ def _yaw(
     if pair[1] is not None:
         by_ratio = yaw_from_ratio(pair[0], pair[1], spacing, seed=seed + 1)
         by_ratio = yaw_off_lines(table, share, by_ratio, by_sway=True, seed=seed + 5)
-        assessments["yaw by ratio"] = without_air(job.table, by_ratio, by_sway=True, seed=seed + 3)
+        assessments["yaw by ratio"] = without_air(
+            job.table, by_ratio, delayed="sway_coefficient", seed=seed + 3
+        )
     return yaw, sway
 
 

@@ -79,6 +79,23 @@ def test_the_model_is_what_the_test_has_more_than_the_tares(tmp_path: Path) -> N
     assert found["workflow_drift_kg_m2"].uncertainty < 3e-4 * inertia(FRAME)
 
 
+def test_the_air_that_stays_in_the_workflow_is_said(tmp_path: Path) -> None:
+    plain = run(tmp_path, 4)
+    path = tmp_path / "job.toml"
+    air = "[entrained_air]\ncoefficient = 0.4\n"
+    text = f"air_density_kg_m3 = 1.2\nbody_density_kg_m3 = 800.0\n{path.read_text()}{air}"
+    path.write_text(text)
+    aired = bifilar.run(str(path))
+    model = [
+        next(one.estimate.value for one in outcome.findings if one.name == "workflow_model_kg_m2")
+        for outcome in (plain, aired)
+    ]
+    # gravity is less by the buoyancy, and nothing else: the air is in both
+    assert model[1] == pytest.approx(model[0] * (1.0 - 1.2 / 800.0), rel=1e-9)
+    assert [note for note in aired.notes if "workflow's inertias still have theirs" in note]
+    assert not [note for note in plain.notes if "still have theirs" in note]
+
+
 def test_a_wrong_spacing_is_caught_by_the_known_body(tmp_path: Path) -> None:
     right, wrong = run(tmp_path, 4, half=0.502), run(tmp_path, 4, half=0.52)
     assert not right.said_no

@@ -57,6 +57,29 @@ def test_air_of_a_compound_pendulum(tmp_path: Path) -> None:
     assert found.assessment.budget.shares[0].name == "coefficient"
 
 
+@pytest.mark.parametrize("like_the_body", [False, True])
+def test_air_about_two_axes(tmp_path: Path, like_the_body: bool) -> None:
+    gyradius, depth, apart = 0.5 if like_the_body else 0.35, 0.30, 0.25
+    air = AIR.replace("gyradius_m = 0.5\n", "") if like_the_body else AIR
+    first, second = (
+        timed(in_air(gyradius, below) / (below * G * (1.0 - RATIO)))
+        for below in (depth, depth + apart)
+    )
+    text = f"period = {first}\nsecond = {{ apart_m = {apart}, period = {second} }}\n{air}"
+    outcome = pendulum.run(write(tmp_path, text))
+    found = {one.name: one for one in outcome.findings}
+    assert found["depth_m"].estimate.value == pytest.approx(depth, rel=1e-5)
+    assert found["k_pitch_m"].estimate.value == pytest.approx(gyradius, rel=1e-5)
+    assert found["k_pitch_in_air_m"].estimate.value > 1.005 * gyradius
+    # by hand: what the same periods give with another coefficient
+    wrong = pendulum.run(
+        write(tmp_path, text.replace(f"coefficient = {COEFFICIENT}\n", "coefficient = 0.701\n"))
+    )
+    for name in ("depth_m", "k_pitch_m"):
+        slope = (value(wrong, name) - value(outcome, name)) / 0.001
+        assert found[name].estimate.uncertainty == pytest.approx(abs(slope) * 0.2, rel=0.03)
+
+
 def test_air_of_a_model_on_the_swing(tmp_path: Path) -> None:
     """The air bears the model, not the swing."""
     mass, gyradius, depth = 30.0, 0.6, 0.8
