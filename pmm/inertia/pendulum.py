@@ -193,13 +193,14 @@ def _gyradius(inertia_kg_m2: Value, mass_kg: Value) -> Value:
 
 
 def decay_findings(runs: PeriodRuns) -> list[Finding]:
-    """Return the period at no amplitude, and with records the damped one and damping ratios.
+    """Return the period: of records at no amplitude, with the damped one and damping ratios.
 
     The damped period is that of the whole record at its amplitudes; releases differ in it as they
     do in the other.
     """
     period = runs.period
-    findings = [Finding("period_s", "period at no amplitude, undamped", period)]
+    words = "period at no amplitude, undamped" if runs.records else "period as observed"
+    findings = [Finding("period_s", words, period)]
     if runs.records:
         damped = float(np.mean([record.fit.modes[0].period_s for record in runs.records]))
         damped_period = period.following(damped, 1.0)

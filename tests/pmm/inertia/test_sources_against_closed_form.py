@@ -60,6 +60,8 @@ def test_a_known_scatter_holds_for_a_stopwatch(tmp_path: Path) -> None:
         (tmp_path / "job.toml").write_text(f"gravity_m_s2 = {G}\n{source}{more}")
         found.append(pendulum.run(str(tmp_path / "job.toml")))
     assert [one.periods[0].period.uncertainty for one in found] == pytest.approx([0.05, 0.1 / 50.0])
+    (observed,) = found[0].findings
+    assert observed.what == "period as observed"  # damped, at its amplitude
     codes = [{flag.code for flag in one.flags} for one in found]
     assert ["single_run" in one for one in codes] == [False, True]
 
