@@ -12,6 +12,8 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.oscillator import Plane
 
 NEEDED = ("X_0", "X_udot", "Y_vdot", "N_rdot", "Y_v", "Y_r", "N_v", "N_r")
+ADDED = ("X_udot", "Y_vdot", "Y_rdot", "N_vdot", "N_rdot")
+"""Terms by an acceleration that a ship's equations have."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +34,8 @@ class HullLoads:
     Raises
     ------
     ConfigurationError
-        If one that no manoeuvre can do without is missing.
+        If one that no manoeuvre can do without is missing, or a term by an acceleration has no
+        place in the equations.
     """
 
     length_m: float
@@ -45,6 +48,16 @@ class HullLoads:
         if rolled:
             raise ConfigurationError(
                 f"{', '.join(rolled)}: the ship stays upright; leave terms of heel and roll out"
+            )
+        unused = [
+            name
+            for name in self.values
+            if term_of(name, Plane.HORIZONTAL).rates and name not in ADDED
+        ]
+        if unused:
+            raise ConfigurationError(
+                f"{', '.join(unused)}: of terms by an acceleration the equations have "
+                f"{', '.join(ADDED)} alone; leave others out"
             )
         missing = [name for name in NEEDED if name not in self.values]
         if missing:

@@ -251,6 +251,10 @@ def test_what_is_missing_or_cannot_be_is_said() -> None:
     del values["X_udot"]
     with pytest.raises(ConfigurationError, match="no X_udot: a turning ship needs them"):
         HullLoads(7.0, 3.0, 1000.0, values)
+    with pytest.raises(ConfigurationError, match=r"Y_vdot\|v\|, X_vdot: of terms by an accel"):
+        HullLoads(
+            7.0, 3.0, 1000.0, kvlcc2.terms() | {"Y_vdot|v|": np.ones(1), "X_vdot": np.ones(1)}
+        )
     weak = Propeller(0.216, (-0.1, 0.0, 0.0), 0.2, 0.4)
     with pytest.raises(ConfigurationError, match="no revolutions balance a resistance of"):
         _ = replace(kvlcc2.ship(), propeller=weak).rate_hz
