@@ -2,7 +2,7 @@
 
 A run's numbers are the terms' columns times the true coefficients, with scatter of the true size;
 what the periods show of it is drawn too. They are fitted with the weights of the product's own fit
-(:func:`analysis.coefficients.cycle_fit.trusted`), and the uncertainty is estimated from what the
+(:func:`analysis.coefficients.fit_sources.trusted`), and the uncertainty is estimated from what the
 periods showed.
 """
 
@@ -15,7 +15,7 @@ from itertools import product
 import numpy as np
 from scipy.stats import chi2
 
-from analysis.coefficients.cycle_fit import trusted
+from analysis.coefficients.fit_sources import trusted
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.design.belief import Belief
 from analysis.design.candidate import CandidateRun

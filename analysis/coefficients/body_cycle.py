@@ -201,6 +201,22 @@ class BodyCycle:
             turn_rate_rad_s=self.turn_rate_rad_s,
         )
 
+    @property
+    def speed_slope(self) -> FloatArray:
+        """How the carriage's speed follows what is stated, ``(len(STATED),)``.
+
+        On a circle whose speed was not recorded it is the rate times the radius.
+        """
+        speed, rate, radius = (
+            STATED.index(name) for name in ("speed_m_s", "turn_rate_relative", "turn_radius_m")
+        )
+        slope = np.zeros(len(STATED))
+        if self.turn_rate_rad_s and not self.sensitivity[:, speed].any():
+            slope[[rate, radius]] = self.speed_m_s, abs(self.turn_rate_rad_s)
+        else:
+            slope[speed] = 1.0
+        return slope
+
     def _insensitive(self) -> FloatArray:
         return np.zeros((2 * len(self.phasors.names), len(STATED)))
 

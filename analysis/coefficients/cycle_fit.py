@@ -12,7 +12,6 @@ A single run is fitted by giving it alone.
 """
 
 import math
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -23,18 +22,17 @@ from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.cycle_checks import check_cycles, check_determined
 from analysis.coefficients.cycle_model import CycleProblem
 from analysis.coefficients.cycle_numbers import CycleNumbers
+from analysis.coefficients.fit_sources import fit_sources, trusted
 from analysis.coefficients.names import Form
-from analysis.coefficients.stated_uncertainties import STATED, StatedUncertainties
+from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.coefficients.terms import LOAD_WORDS, Term, name_of_term, term_of
-from analysis.uncertainty.values import Contribution, UncertainValues, added
+from analysis.uncertainty.values import Contribution, UncertainValues
 from hardware.description.arrays import FloatArray
 
 HIGHER = (1, 2, 3)
 FIRST = (1,)
 QUASI_STEADY = (0, 1)
 STATIC = (0,)
-
-_POOLED_FREEDOM = 20.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +63,8 @@ class CycleFit:
     @cached_property
     def uncertain(self) -> UncertainValues:
         """The values with what scatter, stated uncertainties and other inputs add."""
-        return UncertainValues(self.values, (*_contributions(self), *self.further_inputs))
+        sources = fit_sources(self.problem, self.values, self.stated)
+        return UncertainValues(self.values, (*sources, *self.further_inputs))
 
     def with_input(self, label: str, parts: FloatArray, freedom: float = np.inf) -> "CycleFit":
         """Return the fit with one more input.
@@ -202,9 +201,9 @@ def _weights(problem: CycleProblem, first: FloatArray) -> FloatArray:
 
     Scalars by cycle, load and order, and not whole matrices: a covariance from a few periods makes
     a poor metric, while any fixed weights leave the result unbiased and its propagated covariance
-    right. A cycle's own variance counts as far as its degrees of freedom go beside
-    :data:`_POOLED_FREEDOM` of the cycles' mean: weights that follow the luck of three periods would
-    be too sure of it.
+    right. A cycle's own variance counts as far as its degrees of freedom go beside those of the
+    cycles' mean (:func:`trusted`): weights that follow the luck of three periods would be too sure
+    of it.
 
     Parameters
     ----------
@@ -245,55 +244,7 @@ def residual_variance(
     return np.asarray((variance.reshape(-1, 2) * numbers).sum(axis=1) / numbers.sum(axis=1))
 
 
-def trusted(variance: FloatArray, degrees_of_freedom: FloatArray, mean: FloatArray) -> FloatArray:
-    """Return variances shrunk towards their mean, the more so the fewer periods they come from."""
-    trust = 1.0 / (1.0 + _POOLED_FREEDOM / np.maximum(degrees_of_freedom, 1e-9))
-    return np.asarray(trust * variance + (1.0 - trust) * mean)
-
-
 def _least_freedom(cycle: BodyCycle) -> float:
     return min(
         (source.degrees_of_freedom for source in cycle.phasors.real.contributions), default=np.inf
     )
-
-
-def _luck(problem: CycleProblem, degrees_of_freedom: float) -> float:
-    """Return by how much a cycle's scatter is larger than it seems, where others tell the same.
-
-    A cycle whose periods happened to scatter little has a large weight for it, so that the sum of
-    weighted variances comes out too small. If its estimated variance is off by the part e, its
-    weights are off by -t e, with t the trust in it and its part of the mean (:func:`trusted`), and
-    what it adds to the coefficients by -t e (1 - F), F its share of what tells them. The mean of
-    e^2 is 2 over the degrees of freedom, halved where both parts of a harmonic make one weight.
-    """
-    freedom, count = max(degrees_of_freedom, 1.0), len(problem.numbers.cycles)
-    trust = (1.0 + _POOLED_FREEDOM / count / freedom) / (freedom + _POOLED_FREEDOM)
-    return float(2.0 * trust * len(problem.orders) / problem.real.sum())
-
-
-def _contributions(fit: CycleFit) -> tuple[Contribution, ...]:
-    """Scatter by source, of all cycles that share it, then each stated uncertainty."""
-    problem, stated = fit.problem, fit.stated
-    slopes = problem.sensitivities(fit.values)
-    all_rows, contributions = np.arange(len(problem.terms)), []
-    by_stated = np.zeros((len(all_rows), len(STATED)))
-    labels = [
-        source.label
-        for cycle in problem.numbers.cycles
-        for source in cycle.hull.phasors.real.contributions
-    ]
-    serves = Counter(labels)
-    for slope, share, cycle in zip(slopes, problem.shares, problem.numbers.cycles, strict=True):
-        for source in cycle.hull.phasors.real.contributions:
-            parts = slope @ problem.numbers.scatter(cycle, source)
-            if serves[source.label] == 1:
-                parts += _luck(problem, source.degrees_of_freedom) * (parts - share @ parts)
-            contributions.append(
-                Contribution(source.label, source.degrees_of_freedom, all_rows, parts)
-            )
-        by_stated += slope @ problem.numbers.sensitivity(cycle)
-    for k, (name, spread) in enumerate(zip(STATED, stated.vector, strict=True)):
-        if spread > 0.0:
-            column = by_stated[:, k, None] * spread
-            contributions.append(Contribution(name, stated.freedom(name), all_rows, column))
-    return added(contributions)

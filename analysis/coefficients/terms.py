@@ -57,8 +57,12 @@ class Term:
     @property
     def divisor(self) -> float:
         """What the product of the factors is divided by: U as often as V multiplies it."""
-        power = self.speed_power if self.factors else 2
-        return 1.0 if self.of_speed_m_s is None else self.of_speed_m_s**power
+        return 1.0 if self.of_speed_m_s is None else self.of_speed_m_s**self.divided
+
+    @property
+    def divided(self) -> int:
+        """The power of U in the divisor of a term that is that of a speed."""
+        return self.speed_power if self.factors else 2
 
     @property
     def speed_power(self) -> int:

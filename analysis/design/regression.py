@@ -9,7 +9,7 @@ is part of, and the coefficients' covariance is
 where s is what one standard uncertainty of each stated quantity (mass, lag, gain ...) does to the
 residuals. R is ``V_1 / T + V_r``: what one second leaves over the measured time, and what a repeat
 differs by. W is not ``R^-1``: of few periods the fit trusts the runs' mean variance more than each
-one's own (:func:`analysis.coefficients.cycle_fit.trusted`).
+one's own (:func:`analysis.coefficients.fit_sources.trusted`).
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -19,9 +19,10 @@ from typing import Final
 import numpy as np
 
 from analysis.coefficients.body_cycle import BodyCycle
-from analysis.coefficients.cycle_fit import HIGHER, residual_variance, trusted
+from analysis.coefficients.cycle_fit import HIGHER, residual_variance
 from analysis.coefficients.cycle_model import CycleProblem
 from analysis.coefficients.cycle_numbers import CycleNumbers
+from analysis.coefficients.fit_sources import trusted
 from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from analysis.design.belief import ORDERS, Belief, believed_cycles
 from analysis.design.candidate import CandidateRun

@@ -8,9 +8,16 @@ import pytest
 from analysis.coefficients.body_cycle import BodyCycle
 from analysis.coefficients.cycle_fit import fit_cycles
 from analysis.coefficients.resistance_form import BY_SPEED, fit_surge
+from analysis.coefficients.stated_uncertainties import StatedUncertainties
 from hardware.description.arrangement import Arrangement
 from hardware.description.oscillator import Plane
-from tests.analysis.coefficients.exact_campaigns import HULLS, campaign, cycle_of
+from tests.analysis.coefficients.exact_campaigns import (
+    HULLS,
+    campaign,
+    cycle_of,
+    less_known,
+    struts_of,
+)
 from tests.exact.hull import polynomial
 
 SPEED_M_S, X_UU, ORDERS = 1.2, -5.5, 7
@@ -42,6 +49,27 @@ def test_a_constant_one_is_taken_as_constant() -> None:
     assert choice is None
     for name in NAMES:
         assert found[name] == pytest.approx(HULLS[Plane.HORIZONTAL][name], rel=1e-4), name
+
+
+def test_the_speed_that_it_is_divided_by_counts_in_the_budget() -> None:
+    """The same records, said to be of another carriage speed: X_0 is that at the speed said."""
+    rigs = campaign(Plane.HORIZONTAL, Arrangement())
+    terms = {k: v for k, v in HULLS[Plane.HORIZONTAL].items() if k != "X_0"}
+    rigs = [replace(rig, hull=polynomial(terms | {"X_uu": X_UU})) for rig in rigs]
+
+    def fitted(by_m_s: float, **stated: float):
+        said = []
+        for k, rig in enumerate(rigs):
+            struts = struts_of(rig, str(k), ORDERS)
+            point = replace(struts.set_point, carriage_speed_m_s=SPEED_M_S + by_m_s)
+            said.append(less_known(replace(struts, set_point=point), rig))
+        return fit_surge(said, NAMES, (0, 1, 2), stated=StatedUncertainties(**stated))[0]
+
+    fit = fitted(0.0, speed_m_s=1.0)
+    (told,) = [one.dense(len(NAMES))[:, 0] for one in fit.uncertain.contributions
+               if one.label == "speed_m_s"]  # fmt: skip
+    shown = (fitted(1e-4).values - fitted(-1e-4).values) / 2e-4
+    np.testing.assert_allclose(np.abs(told), np.abs(shown), rtol=0.01, atol=0.01)
 
 
 def test_its_terms_follow_each_number_of_the_cycles_as_other_fits_do() -> None:

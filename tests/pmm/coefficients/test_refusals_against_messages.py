@@ -100,7 +100,9 @@ def test_systems_without_what_they_need(heave: Path, tmp_path: Path) -> None:
     table = record(tmp_path, rig, "still", SetPoint(0.6, 0.02))
     (tmp_path / "campaign.toml").write_text(head(rig) + table)
     (tmp_path / "coefficients.toml").write_text("[ship]\nlength_m = 2.5\n")
-    assert "nothing was measured at a speed above 0 m/s" in refused(2, tmp_path, "--system", "prime")
+    assert "nothing was measured at a speed above 0 m/s" in refused(
+        2, tmp_path, "--system", "prime"
+    )
     assert run(tmp_path, "--system", "seakeeping").exit_code == 0
 
 
