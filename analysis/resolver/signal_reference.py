@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from analysis.recording import Recording
+from analysis.resolver.estimate import fit_drift
 from analysis.resolver.gaps import gap_in_words, without_gaps
 from analysis.resolver.period_values import solve_periods
 from analysis.resolver.reference import (
@@ -141,12 +142,17 @@ def _follow(signal: Recording, frequency_hz: float) -> tuple[FloatArray, FloatAr
     harmonics = max(1, min(3, int((samples - 1.0) // 2)))
     steady = from_frequency(frequency_hz, signal.start_s, signal.end_s)
     sums = period_sums(signal, steady, harmonics)
-    coefficients = solve_periods(sums).coefficients[:, 0]
-    phasor = coefficients[:, 1] + 1j * coefficients[:, 2]
-    longest = _longest_motion(phasor)
-    middle_s = (sums.opened_s + sums.closed_s)[longest] / 2.0
-    turned = np.unwrap(np.angle(phasor[longest])) / (2.0 * np.pi)
-    return middle_s, steady.cycles_at(middle_s) + turned
+    moving = sums[_longest_motion(_first_harmonic(solve_periods(sums).coefficients[:, 0]))]
+    values = solve_periods(moving)
+    # A drift would add -d / pi per period to each in-phase part, and so turn the phase.
+    drift = fit_drift(moving, moving).slope[0] * values.ramp
+    turned = np.unwrap(np.angle(_first_harmonic(values.coefficients[:, 0] - drift)))
+    middle_s = (moving.opened_s + moving.closed_s) / 2.0
+    return middle_s, steady.cycles_at(middle_s) + turned / (2.0 * np.pi)
+
+
+def _first_harmonic(coefficients: FloatArray) -> ComplexArray:
+    return np.asarray(coefficients[:, 1] + 1j * coefficients[:, 2])
 
 
 def _longest_motion(phasor: ComplexArray) -> slice:

@@ -86,11 +86,14 @@ def test_a_second_harmonic_does_not_turn_the_phase(second: float) -> None:
 
 
 @pytest.mark.parametrize("slope", [1e-3, 0.02, 0.1])
-def test_drift_does_not_hide_the_motion(slope: float) -> None:
+@pytest.mark.parametrize("phase", [0.0, 0.3, 0.7])
+def test_drift_neither_hides_the_motion_nor_turns_it(slope: float, phase: float) -> None:
+    """Left in, it would turn the phase by up to ``slope / 0.77 / pi``."""
     time = np.arange(3000) / RATE_HZ
-    cycles = 0.3 + 0.77 * time
+    cycles = phase + 0.77 * time
     reference = reference_of(np.sin(2.0 * np.pi * cycles) + slope * time)
     assert reference.frequency_hz == pytest.approx(0.77, rel=1e-5)
+    assert np.abs(away_rad(reference, time, cycles)).max() < 1e-3 * slope + 1e-5
 
 
 @pytest.mark.parametrize("periods", [3, 4, 5])
