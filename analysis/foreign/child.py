@@ -55,7 +55,8 @@ def _answer(reader: str, path: Path, answers: BinaryIO) -> None:
 def _hand_on(content: ForeignColumns, answers: BinaryIO) -> None:
     units, values = content.units, content.values
     columns = [[name, units.get(name, ""), len(column)] for name, column in values.items()]
-    answer = {"columns": columns, "sample_rate_hz": content.sample_rate_hz}
+    rate = {"sample_rate_hz": content.sample_rate_hz, "no_rate": content.no_rate}
+    answer = {"columns": columns, **rate}
     if len(columns) > MOST_COLUMNS or len(json.dumps(answer)) >= LONGEST_ANSWER:
         _say({"refused": f"{len(columns)} columns; the limit is {MOST_COLUMNS}"}, answers)
         return

@@ -21,8 +21,11 @@ class ForeignColumns:
         By name, where the file states one.
     sample_rate_hz
         Where the file states it; a time column goes before it.
+    no_rate
+        Where what the file states contradicts itself, so that there is no rate: how.
     """
 
     values: Mapping[str, FloatArray]
     units: Mapping[str, str]
     sample_rate_hz: float | None = None
+    no_rate: str = ""

@@ -176,7 +176,7 @@ class _Child:
         allowed.check_rows(longest, len(columns), where)
         values = {name: self._numbers(count) for name, _, count in columns}
         units = {name: unit for name, unit, _ in columns}
-        return ForeignColumns(values, units, answer["sample_rate_hz"])
+        return ForeignColumns(values, units, answer["sample_rate_hz"], answer["no_rate"])
 
     def _numbers(self, count: int) -> np.ndarray[Any, np.dtype[np.float64]]:
         values = np.empty(count)

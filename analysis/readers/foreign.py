@@ -19,6 +19,10 @@ from hardware.description.errors import ConfigurationError, DataError
 from hardware.description.flags import Flag, Severity
 from hardware.description.version import installing
 
+_REMEDY = (
+    "export them with a column of times, or give the sample rate if they were sampled together"
+)
+
 
 def foreign_reader(
     kind: str, read: Callable[[Path], ForeignColumns], package: str | None = None
@@ -61,6 +65,8 @@ def _recording_of(
     headers = tuple(_header(k, key, content.units) for k, key in enumerate(columns_kept, 1))
     table = dict(zip(headers, columns_kept.values(), strict=True))
     if columns.sample_rate_hz is None and not _has_time(headers, columns):
+        if content.no_rate:
+            raise DataError(f"{path}: {content.no_rate}; {_REMEDY}")
         columns = replace(columns, sample_rate_hz=content.sample_rate_hz)
     plan = plan_columns(headers, columns, str(path))
     with path.open("rb") as file:

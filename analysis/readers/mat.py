@@ -2,10 +2,13 @@
 
 Every vector of numbers is a column, under its variable's name; a matrix with more rows than columns
 is a column for each (``data#1``, ``data#2`` ...), a struct's fields are ``run.force`` and so on.
-Scalars called ``fs``, ``sample_rate_hz`` or ``sample_rate`` state the rate, ``dt`` its inverse.
+Scalars called ``fs``, ``sample_rate_hz`` or ``sample_rate`` state the rate, ``dt`` its inverse;
+they have to agree.
 """
 
 from collections.abc import Iterator, Mapping
+from itertools import pairwise
+from math import isclose
 from pathlib import Path
 from typing import Any, Final
 
@@ -18,6 +21,7 @@ from hardware.description.errors import DataError
 
 _RATES: Final = ("fs", "sample_rate_hz", "sample_rate", "samplerate")
 _STEPS: Final = ("dt", "ts")
+_SAME_RATE: Final = 1e-6  # relative: the last digit of a rounded inverse
 _DEEPEST: Final = 4  # structs within structs
 _HDF5: Final = b"\x89HDF\r\n\x1a\n"
 _USER_BLOCK: Final = 512  # what MATLAB writes before the HDF5 of version 7.3
@@ -33,7 +37,7 @@ def read_mat(path: Path) -> ForeignColumns:
     """
     content = _version_73(path) if _is_hdf5(path) else _version_5(path)
     arrays = dict(_flat("", content, 0))
-    return ForeignColumns(dict(_columns(arrays)), {}, _rate(arrays))
+    return ForeignColumns(dict(_columns(arrays)), {}, *_rate(arrays))
 
 
 READER: Final = foreign_reader("mat", read_mat)
@@ -108,14 +112,18 @@ def _columns(arrays: Mapping[str, FloatArray]) -> Iterator[tuple[str, FloatArray
                 yield f"{name}#{k}", np.ascontiguousarray(column)
 
 
-def _rate(arrays: Mapping[str, FloatArray]) -> float | None:
-    """Return the rate that a scalar states, if one does."""
+def _rate(arrays: Mapping[str, FloatArray]) -> tuple[float | None, str]:
+    """Return the rate that scalars state, if any does, or how they contradict each other."""
+    rates_hz = {}
     for name, array in arrays.items():
         last = name.rpartition(".")[2].casefold()
         if array.size != 1 or not float(array.flat[0]) > 0.0:
             continue
         if last in _RATES:
-            return float(array.flat[0])
+            rates_hz[name] = float(array.flat[0])
         if last in _STEPS:
-            return 1.0 / float(array.flat[0])
-    return None
+            rates_hz[name] = 1.0 / float(array.flat[0])
+    for (first, first_hz), (name, rate_hz) in pairwise(rates_hz.items()):
+        if not isclose(first_hz, rate_hz, rel_tol=_SAME_RATE):
+            return None, f"{first!r} states {first_hz:g} Hz and {name!r} {rate_hz:g} Hz"
+    return next(iter(rates_hz.values()), None), ""

@@ -15,6 +15,7 @@ COUNT = 2000
 TIME = np.arange(COUNT) / RATE
 FORCE = 12.0 + 30.0 * np.sin(2.0 * np.pi * 0.5 * TIME)
 STROKE = 20.0 * np.sin(2.0 * np.pi * 0.5 * TIME + 0.3)  # mm
+START = np.datetime64("2025-03-01T10:00:00.000000")
 MAP = ColumnMap(
     channels=(
         ChannelColumn("force_aft", "F1", "N", sign=-1),
@@ -176,10 +177,44 @@ def test_what_is_missing_is_named(tmp_path: Path) -> None:
     write_5(path, {"words": "nothing else"})
     with pytest.raises(DataError, match="no vector of numbers"):
         read_recording(path)
-    groups = {"a": {"x": (FORCE, {"wf_increment": 0.01}), "y": (FORCE, {"wf_increment": 0.02})}}
-    write_tdms(tmp_path / "run.tdms", groups)
-    with pytest.raises(DataError, match="several rates"):
-        read_recording(tmp_path / "run.tdms")
+
+
+@pytest.mark.parametrize(
+    ("own", "message"),
+    [
+        ({"wf_increment": 0.02}, "'x' states 100 Hz and 'y' 50 Hz"),
+        ({"wf_increment": 0.0}, "'x' states 100 Hz and 'y' no rate"),
+        ({"wf_start_offset": 0.25}, "'y' starts 0.25 s after 'x'"),
+        ({"wf_start_time": START - np.timedelta64(4, "ms")}, "'y' starts -0.004 s after 'x'"),
+    ],
+)
+def test_tdms_channels_of_several_clocks_are_refused(
+    tmp_path: Path, own: dict[str, Any], message: str
+) -> None:
+    path, common = tmp_path / "run.tdms", {"wf_increment": 0.01, "wf_start_time": START}
+    write_tdms(path, {"a": {"x": (FORCE, {}), "y": (FORCE, own)}}, **common)
+    with pytest.raises(DataError, match=message):
+        read_recording(path)
+    assert read_recording(path, sample_rate_hz=RATE).sample_rate_hz == RATE
+    write_tdms(path, {"a": {"t": (TIME, {}), "x": (FORCE, {}), "y": (FORCE, own)}}, **common)
+    assert read_recording(path).sample_rate_hz == pytest.approx(RATE)
+
+
+def test_tdms_channels_that_start_together_by_time_and_offset(tmp_path: Path) -> None:
+    late = {"wf_start_time": START - np.timedelta64(4, "ms"), "wf_start_offset": 0.004}
+    common = {"wf_increment": 1.0 / RATE, "wf_start_time": START}
+    write_tdms(tmp_path / "run.tdms", {"a": {"x": (FORCE, {}), "y": (FORCE, late)}}, **common)
+    assert read_recording(tmp_path / "run.tdms").sample_rate_hz == pytest.approx(RATE)
+
+
+@pytest.mark.parametrize("write", [write_5, write_73])
+def test_mat_structs_of_several_rates_are_refused(tmp_path: Path, write) -> None:  # type: ignore[no-untyped-def]
+    path = tmp_path / "run.mat"
+    write(path, {"a": {"x": FORCE, "fs": 100.0}, "b": {"y": FORCE, "dt": 0.005}})
+    with pytest.raises(DataError, match=r"'a\.fs' states 100 Hz and 'b\.dt' 200 Hz"):
+        read_recording(path)
+    write(path, {"a": {"x": FORCE, "fs": RATE}, "b": {"y": FORCE, "dt": 1.0 / RATE}})
+    assert read_recording(path).sample_rate_hz == RATE
 
 
 def test_into_this_projects_own_format(tmp_path: Path) -> None:
