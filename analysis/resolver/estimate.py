@@ -121,16 +121,32 @@ def harmonics_by_bins(
     deviations: FloatArray,
     degrees_of_freedom: FloatArray,
     estimator: str,
+    mean_cost: float,
 ) -> Harmonics:
     """Return harmonics whose uncertainty comes from the bins beside them.
+
+    That of the mean comes from the scatter of the periods' means and its memory: no bins near zero
+    frequency show how noise rises towards it.
 
     Parameters
     ----------
     plain
         The periods of the gate.
-    coefficients, deviations, degrees_of_freedom, estimator
+    coefficients, estimator
         As in :class:`analysis.resolver.harmonics.Harmonics`.
+    deviations, degrees_of_freedom
+        Of the harmonics, shapes ``(channels, 2 N, k)`` and ``(2 N,)``.
+    mean_cost
+        Variance of the mean in white noise, over that of whole periods.
     """
+    scatter = scatter_of(plain, plain, drift)
+    means = np.linalg.qr(scatter.deviations[:, :, 0], mode="r").T * np.sqrt(mean_cost)
+    channels, size = coefficients.shape
+    every = np.zeros((channels, size, means.shape[1] + deviations.shape[2]))
+    every[:, 0, : means.shape[1]] = means
+    every[:, 1:, means.shape[1] :] = deviations
+    widening = np.ones_like(coefficients)
+    widening[:, 0] = scatter.widening[:, 0]
     return Harmonics(
         run=recording.name,
         channel_names=recording.channel_names,
@@ -139,9 +155,9 @@ def harmonics_by_bins(
         closed_s=float(plain.closed_s[-1]),
         periods=plain.period_count,
         coefficients=coefficients,
-        deviations=deviations,
-        degrees_of_freedom=degrees_of_freedom,
-        widening=np.ones_like(coefficients),
+        deviations=every,
+        degrees_of_freedom=np.append(scatter.degrees_of_freedom[:1], degrees_of_freedom),
+        widening=widening,
         drift_per_s=drift.slope,
         drift_source=drift.source,
         interval_source=IntervalSource.BINS,

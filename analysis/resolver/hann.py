@@ -4,6 +4,7 @@ A plain gate lets interference at x times the fundamental through as ``1 / (m |x
 taper over its m periods as the inverse cube, for 1.5 times the variance in white noise. The
 uncertainty comes from the lines beside each harmonic, two and more bins away, where the taper lets
 nothing of the harmonics through: noise of any colour that is level across them is seen as it is.
+That of the mean comes from the scatter between periods, as without a taper.
 """
 
 import numpy as np
@@ -18,6 +19,7 @@ from hardware.description.errors import DataError
 
 MIN_PERIODS = 5
 _FARTHEST_BIN = 8
+_COST = 1.5  # variance in white noise, over that of whole periods
 
 
 def resolve_hann(
@@ -43,8 +45,7 @@ def resolve_hann(
     harmonic_orders = np.arange(1.0, harmonics + 1.0)
     bins = noise_bins(periods)
     bin_orders = (harmonic_orders[:, None] + bins / periods).reshape(-1)
-    low = bins[bins > 0] / periods
-    orders = np.concatenate((harmonic_orders, bin_orders, low))
+    orders = np.concatenate((harmonic_orders, bin_orders))
 
     def taper(cycles: FloatArray) -> FloatArray:
         turned = (cycles - edges_cycles[0]) / periods
@@ -59,9 +60,9 @@ def resolve_hann(
     size = 2 * harmonics + 1
     coefficients = np.asarray(np.linalg.solve(gram[:size, :size], moment[:, :size].T).T, np.float64)
     residuals = 2.0 * (moment - coefficients @ gram[:size]) / gram[0, 0]
-    deviations, freedom = _from_bins(residuals[:, size:], harmonics, len(bins), len(low))
+    deviations, freedom = _from_bins(residuals[:, size:], len(bins))
     return harmonics_by_bins(
-        recording, plain, drift, coefficients, deviations, freedom, "Hann taper"
+        recording, plain, drift, coefficients, deviations, freedom, "Hann taper", _COST
     )
 
 
@@ -76,17 +77,9 @@ def noise_bins(periods: int) -> FloatArray:
     return np.concatenate((-positive[::-1], positive))
 
 
-def _from_bins(
-    lines: FloatArray, harmonics: int, bins: int, low: int
-) -> tuple[FloatArray, FloatArray]:
+def _from_bins(lines: FloatArray, bins: int) -> tuple[FloatArray, FloatArray]:
     """Deviations and degrees of freedom from the sine and cosine parts of the noise lines."""
-    power = (lines**2).reshape(len(lines), -1, 2).mean(axis=2)
-    line_power = power[:, : harmonics * bins].reshape(len(lines), harmonics, bins).mean(axis=2)
-    variance = np.empty((len(lines), 2 * harmonics + 1))
-    # A mean takes half the variance of a sine or cosine part.
-    variance[:, 0] = power[:, harmonics * bins :].mean(axis=1) / 2.0
-    variance[:, 1::2] = variance[:, 2::2] = line_power
-    freedom = np.full(2 * harmonics + 1, 2.0 * bins)
-    freedom[0] = 2.0 * low
+    line_power = (lines**2).reshape(len(lines), -1, 2 * bins).mean(axis=2)
+    variance = np.repeat(line_power, 2, axis=1)
     deviations = np.diag(np.sqrt(variance).ravel())
-    return deviations.reshape(*variance.shape, -1), freedom
+    return deviations.reshape(*variance.shape, -1), np.full(variance.shape[1], 2.0 * bins)

@@ -51,7 +51,7 @@ def resolve_local(
 ) -> Harmonics:
     """Return the harmonics of the gate between the first edge and the last, its transient off.
 
-    The mean is that of whole periods: a transient stays in it.
+    The mean and its uncertainty are those of whole periods: a transient stays in it.
 
     Raises
     ------
@@ -76,10 +76,10 @@ def resolve_local(
     coefficients[:, 1::2] -= leak.real
     coefficients[:, 2::2] -= leak.imag
     spare = len(local.bins) - DEGREE - 1
-    freedom = np.full(2 * harmonics + 1, 2.0 * spare)
+    freedom = np.full(2 * harmonics, 2.0 * spare)
     deviations = _deviations(residuals, cost(periods), spare)
     return harmonics_by_bins(
-        recording, plain, drift, coefficients, deviations, freedom, "local polynomials"
+        recording, plain, drift, coefficients, deviations, freedom, "local polynomials", 1.0
     )
 
 
@@ -134,22 +134,19 @@ def _leaks(local: _Local) -> tuple[ComplexArray, ComplexArray]:
 
 
 def _deviations(residuals: ComplexArray, inflation: float, spare: int) -> FloatArray:
-    """Return the deviates of all coefficients: each harmonic's own, common to the channels.
+    """Return the deviates of the harmonics' parts: each harmonic's own, common to the channels.
 
-    Noise at a harmonic is taken for circular. A mean takes half the variance of a sine part: it has
-    that of the first harmonic's bins.
+    Noise at a harmonic is taken for circular.
     """
     channels, harmonics, _ = residuals.shape
     width = 2 * channels
-    deviations = np.zeros((channels, 2 * harmonics + 1, (harmonics + 1) * width))
+    deviations = np.zeros((channels, 2 * harmonics, harmonics * width))
     scale = np.sqrt(inflation / (2.0 * spare))
     for n in range(harmonics):
         residual = residuals[:, n].T  # (bins, channels)
         parts = np.stack((residual, 1j * residual)).reshape(-1, channels) * scale
         flat = np.stack((parts.real, parts.imag), axis=-1).reshape(len(parts), width)
         root = np.asarray(np.linalg.qr(flat, mode="r")).T.reshape(channels, 2, -1)
-        at = (n + 1) * width
-        deviations[:, 2 * n + 1 : 2 * n + 3, at : at + root.shape[-1]] = root
-        if n == 0:
-            deviations[:, 0, : root.shape[-1]] = root[:, 0] / np.sqrt(2.0 * inflation)
+        at = n * width
+        deviations[:, 2 * n : 2 * n + 2, at : at + root.shape[-1]] = root
     return deviations

@@ -3,6 +3,7 @@
 The benchmark does this with more trials; here every channel of one seeded record is a trial.
 """
 
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
@@ -13,6 +14,7 @@ from analysis.resolver.checks import gate_flags
 from analysis.resolver.estimate import resolve
 from analysis.resolver.hann import resolve_hann
 from analysis.resolver.harmonics import Harmonics, IntervalSource
+from analysis.resolver.local_polynomial import resolve_local
 from analysis.resolver.reference import PhaseReference, from_frequency
 from analysis.resolver.sums import PeriodSums, period_sums
 from tests.analysis.resolver.signals import (
@@ -28,6 +30,7 @@ RATE_HZ = 40.0
 FREQUENCY_HZ = 1.037
 PERIODS = 30
 CONTENT = np.array([10.0, 1.0, 0.4, -0.3, 0.2, 0.15, -0.1])
+COST = {resolve_hann: 1.5, resolve_local: 1.0}  # of the mean, over whole periods' variance
 NOISES = ("white", "autoregressive", "sloshing", "drifting")
 THREE_SIGMA = 3.0 * np.sqrt(0.95 * 0.05 / TRIALS)
 
@@ -81,6 +84,26 @@ def test_hann_taper_covers(kind: str, periods: int) -> None:
     run, reference, _ = trials(kind)
     edges = 1.0 + np.arange(periods + 1.0)
     check(kind, coverage(resolve_hann(run, reference, edges, 3)))
+
+
+@pytest.mark.parametrize("estimator", [resolve_hann, resolve_local])
+@pytest.mark.parametrize("memory_periods", [0.0, 2.5])
+def test_means_beside_bins_cover_in_slow_wander(
+    estimator: Callable[..., Harmonics], memory_periods: float
+) -> None:
+    """The lines beside the first harmonic would let the mean cover 0.3 or 0.5 of the time."""
+    memory = np.exp(-FREQUENCY_HZ / (memory_periods * RATE_HZ)) if memory_periods else 0.0
+    shape = (TRIALS, int(10 * RATE_HZ / FREQUENCY_HZ))
+    run = recording(autoregressive(np.random.default_rng(5), shape, memory), RATE_HZ)
+    reference = from_frequency(FREQUENCY_HZ, run.start_s, run.end_s)
+    result = estimator(run, reference, 1.0 + np.arange(9.0), 3)
+    covered = float((np.abs(result.mean) <= result.half_width()[:, 0]).mean())
+    assert covered >= 0.95 - THREE_SIGMA
+    if not memory_periods:
+        expected = np.sqrt(COST[estimator] / shape[1] * 10.0 / 8.0)
+        assert np.sqrt((result.covariance[:, 0, 0] / result.widening[:, 0] ** 2).mean()) == (
+            pytest.approx(expected, rel=0.05)
+        )
 
 
 @pytest.mark.parametrize("kind", ["autoregressive", "sloshing"])
