@@ -10,6 +10,9 @@ from hardware.description.flags import Flag, Severity
 _NEIGHBOURS = 7  # intervals whose median is the local period
 EARLY = 0.7  # of the local period: a pulse too many
 LATE = 1.5  # of the local period: a pulse missed
+_UNEQUAL = 0.05  # of a pulse's two intervals together, by which they differ: more than a shaft does
+_THROUGHOUT = 0.9  # of the pulses
+_FEWEST_PAIRED = 5  # pulses between others: fewer may be a single one too many
 
 
 def from_photocell(
@@ -18,7 +21,7 @@ def from_photocell(
     """Build a reference from photocell pulses, straight within each revolution.
 
     Its knots are at the pulses. A missed pulse is bridged, one too many is dropped; both are
-    flagged.
+    flagged. Where pulses come in pairs throughout the first of each is taken, and that is flagged.
 
     Parameters
     ----------
@@ -43,10 +46,11 @@ def from_photocell(
             f"photocell pulse {at + 1} at {edges[at + 1]:.6f} s does not come after pulse {at} "
             f"at {edges[at]:.6f} s; pulses must be given in order of time, each once"
         )
+    edges, paired = _first_of_pairs(edges)
     edges, extra = _without_extra(edges)
     turns = _turns(edges)
     cycles = np.concatenate(([0.0], np.cumsum(turns))) + angle_offset_rad / (2.0 * np.pi)
-    flags = _pulse_flags(edges, turns, extra)
+    flags = paired + _pulse_flags(edges, turns, extra)
     return PhaseReference(ReferenceSource.PHOTOCELL, edges, cycles, flags)
 
 
@@ -56,6 +60,28 @@ def _local_period(intervals: FloatArray) -> FloatArray:
     windows = np.lib.stride_tricks.sliding_window_view(intervals, width)
     at = np.clip(np.arange(len(intervals)) - width // 2, 0, len(windows) - 1)
     return np.asarray(np.median(windows, axis=1)[at])
+
+
+def _first_of_pairs(edges: FloatArray) -> tuple[FloatArray, tuple[Flag, ...]]:
+    """Keep the first pulse of each pair where they come in pairs: from two marks, or both flanks.
+
+    Which of the two came out of time with the rest could not be said there.
+    """
+    intervals = np.diff(edges)
+    longer = np.diff(intervals) / (intervals[1:] + intervals[:-1])  # after a pulse than before it
+    alternate = (longer[1:] > 0.0) != (longer[:-1] > 0.0)
+    unequal = np.abs(longer) > _UNEQUAL
+    if len(longer) < _FEWEST_PAIRED or np.mean(alternate & unequal[1:]) < _THROUGHOUT:
+        return edges, ()
+    opens = np.concatenate((longer[:1] > 0.0, longer < 0.0, longer[-1:] > 0.0))
+    within, between = (float(np.median(intervals[part])) for part in (opens[:-1], ~opens[:-1]))
+    apart_deg = 360.0 * within / (within + between)
+    message = (
+        f"the pulses come in pairs, {apart_deg:.3g} degrees of the shaft apart: two marks, or both "
+        "flanks of one. The first of each pair is taken; if the other is the mark, the phases of "
+        "harmonic n are n times as many degrees too small. Mask a mark, or measure one flank"
+    )
+    return edges[opens], (Flag("paired_pulses", Severity.WARNING, message),)
 
 
 def _without_extra(edges: FloatArray) -> tuple[FloatArray, list[float]]:

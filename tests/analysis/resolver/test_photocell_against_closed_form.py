@@ -75,6 +75,29 @@ def test_missed_pulses_at_the_ends_only_shorten_the_reference(missed: list[int])
     assert not reference.flags
 
 
+@pytest.mark.parametrize("apart", [0.01, 0.1, 0.2, 0.3, 0.33, 0.36, 0.4, 0.45, 0.6, 0.9])
+@pytest.mark.parametrize("opens_on", [0, 1])
+def test_of_two_marks_one_tells_the_phase(apart: float, opens_on: int) -> None:
+    """The nearer of the two that follow a mark is the second of its pair."""
+    first, second = PULSES, PULSES + apart
+    edges = np.sort(np.concatenate((first, second)))[opens_on:]
+    reference = from_photocell(edges)
+    told = reference.cycles_at(first if apart < 0.5 else second)
+    assert np.ptp(told - np.arange(12.0)) < 1e-12
+    assert told[0] == pytest.approx(np.rint(told[0]), abs=1e-12)
+    assert codes(reference) == {"paired_pulses"}
+    degrees = 360.0 * min(apart, 1.0 - apart)
+    assert f"{degrees:.3g} degrees of the shaft apart" in reference.flags[0].message
+
+
+def test_pulses_lost_of_pairs_do_not_shift_the_others() -> None:
+    """Alone, the second of a pair is out of time, and the first passes for a second one."""
+    edges = np.sort(np.concatenate((np.arange(40.0), np.arange(40.0) + 0.3)))
+    reference = from_photocell(np.delete(edges, [24, 51]))  # a first one, and a second one
+    assert reference.cycles_at(np.arange(40.0)) == pytest.approx(np.arange(40.0), abs=1e-12)
+    assert codes(reference) == {"paired_pulses", "missed_pulse", "extra_pulse"}
+
+
 @given(st.integers(0, 10), st.floats(0.005, 0.995))
 def test_an_extra_pulse_is_dropped_and_no_other(revolution: int, fraction: float) -> None:
     extra = PULSES[revolution] + fraction
