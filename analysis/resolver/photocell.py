@@ -10,7 +10,7 @@ from hardware.description.flags import Flag, Severity
 _NEIGHBOURS = 7  # intervals whose median is the local period
 EARLY = 0.7  # of the local period: a pulse too many
 LATE = 1.5  # of the local period: a pulse missed
-_UNEQUAL = 0.05  # of a pulse's two intervals together, by which they differ: more than a shaft does
+_UNEQUAL = 0.05  # of a pulse's two intervals together, by which they differ: more than a shaft's
 _THROUGHOUT = 0.9  # of the pulses
 _FEWEST_PAIRED = 5  # pulses between others: fewer may be a single one too many
 
@@ -68,10 +68,11 @@ def _first_of_pairs(edges: FloatArray) -> tuple[FloatArray, tuple[Flag, ...]]:
     Which of the two came out of time with the rest could not be said there.
     """
     intervals = np.diff(edges)
-    longer = np.diff(intervals) / (intervals[1:] + intervals[:-1])  # after a pulse than before it
-    alternate = (longer[1:] > 0.0) != (longer[:-1] > 0.0)
-    unequal = np.abs(longer) > _UNEQUAL
-    if len(longer) < _FEWEST_PAIRED or np.mean(alternate & unequal[1:]) < _THROUGHOUT:
+    together = intervals[1:] + intervals[:-1]
+    longer = np.diff(intervals) / together  # after a pulse than before it
+    again = np.abs(intervals[2:] - intervals[:-2]) < _UNEQUAL * together[1:]
+    in_pairs = again & (np.abs(longer[1:]) > _UNEQUAL)
+    if len(longer) < _FEWEST_PAIRED or in_pairs.mean() < _THROUGHOUT:
         return edges, ()
     opens = np.concatenate((longer[:1] > 0.0, longer < 0.0, longer[-1:] > 0.0))
     within, between = (float(np.median(intervals[part])) for part in (opens[:-1], ~opens[:-1]))

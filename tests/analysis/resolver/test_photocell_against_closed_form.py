@@ -90,6 +90,14 @@ def test_of_two_marks_one_tells_the_phase(apart: float, opens_on: int) -> None:
     assert f"{degrees:.3g} degrees of the shaft apart" in reference.flags[0].message
 
 
+def test_pulses_that_are_lost_in_turn_are_no_pairs() -> None:
+    turns = np.array([1.0, 4.0, 1.0, 3.0, 1.0, 4.0, 1.0])  # as a mark shorter than a sample
+    edges = np.concatenate(([0.0], np.cumsum(turns)))
+    reference = from_photocell(edges)
+    assert reference.cycles_at(edges) == pytest.approx(edges, abs=1e-12)
+    assert codes(reference) == {"missed_pulse"}
+
+
 def test_pulses_lost_of_pairs_do_not_shift_the_others() -> None:
     """Alone, the second of a pair is out of time, and the first passes for a second one."""
     edges = np.sort(np.concatenate((np.arange(40.0), np.arange(40.0) + 0.3)))
