@@ -7,15 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.recording import Recording
-from analysis.resolver.checks import (
-    frequency_flags,
-    gate_flags,
-    held_flags,
-    pulse_flags,
-    reference_flags,
-    saturation_flags,
-)
+from analysis.resolver.checks import gate_flags, held_flags, reference_flags, saturation_flags
 from analysis.resolver.estimate import resolve
+from analysis.resolver.frequency_checks import frequency_flags, pulse_flags
 from analysis.resolver.hann import resolve_hann
 from analysis.resolver.harmonics import Harmonics
 from analysis.resolver.local_polynomial import resolve_local
@@ -100,7 +94,8 @@ def analyse(
     sums = period_sums(chosen, reference, settings.harmonics, edges_cycles=edges)
     values = solve_periods(sums)
     stretch, flags = _stretch(chosen, values, settings)
-    steady = sums[stretch.start : stretch.stop]
+    within = slice(stretch.start, stretch.stop)
+    steady, steady_values = sums[within], values[within]
     gates = _gates(chosen, steady, settings)
     readings = tuple(
         _reading(chosen, reference, gate, steady, settings, intervals=intervals) for gate in gates
@@ -116,7 +111,7 @@ def analyse(
         + reference.flags
         + set_point_flags(recording, reference, gates[0], readings[0])
         + frequency_flags(chosen.channel_names, values, reference)
-        + pulse_flags(recording, reference, readings[0])
+        + pulse_flags(recording, reference, steady_values, readings[0])
         + flags
         + reference_flags(recording, stated_reference, steady, settings)
         + saturation_flags(chosen, float(steady.opened_s[0]), float(steady.closed_s[-1]))

@@ -1,4 +1,4 @@
-"""Flags of a gate: gaps, drift, transients, changing speed, saturation, a frequency that is off."""
+"""Flags of a gate: gaps, drift, transients, changing speed, saturation."""
 
 import numpy as np
 
@@ -8,7 +8,6 @@ from analysis.resolver.period_values import PeriodValues, solve_periods, usable
 from analysis.resolver.reference import PhaseReference, ReferenceSource
 from analysis.resolver.settings import ResolverSettings
 from analysis.resolver.sums import PeriodSums, period_sums
-from hardware.description.arrays import ComplexArray
 from hardware.description.channels import CARRIAGE_SPEED
 from hardware.description.flags import Flag, Severity
 
@@ -19,13 +18,9 @@ _ROUNDING = 1e-9  # of the mean: what a constant channel may seem to drift
 _NOTABLE = 0.01  # of the first harmonic: a change that matters
 _AT_ONCE = 200_000  # samples
 _ROUNDED = 1.0 - 1e-9  # of the full scale
-_FEWEST = 4  # periods: fewer tell no turning from noise
-_NOTABLE_CYCLES = 0.05  # from the first period to the last
-_STEADY = 0.95  # mean resultant length of the turns: 1 where all are the same
 _FEWEST_STEPS = 20  # of a channel that is held: fewer may be even by chance
 _HELD = 1.5  # samples that a value stands for
 _EVENLY = 0.9  # of the steps
-_STRAIGHT = 0.2  # largest distance from an even turning, of the whole turn
 
 
 def gate_flags(gate: PeriodSums, result: Harmonics) -> tuple[Flag, ...]:
@@ -177,82 +172,6 @@ def held_flags(recording: Recording, opened_s: float, closed_s: float) -> tuple[
         )
         flags.append(Flag("held", Severity.WARNING, message, name))
     return tuple(flags)
-
-
-def frequency_flags(
-    names: tuple[str, ...], values: PeriodValues, reference: PhaseReference
-) -> tuple[Flag, ...]:
-    """Return ``frequency_differs`` where the first harmonic turns steadily against a given one.
-
-    Judged by the channel whose first harmonic stands out most from what else its periods do.
-
-    Parameters
-    ----------
-    names
-        The channels of ``values``.
-    """
-    if reference.source is not ReferenceSource.FREQUENCY:
-        return ()
-    phasors = values.coefficients[:, :, 1] + 1j * values.coefficients[:, :, 2]
-    phasors = phasors[np.isfinite(phasors).all(axis=1)]
-    if len(phasors) < _FEWEST:
-        return ()
-    # Where periods were left out one turn spans several; the median does not mind a few.
-    row = _strongest_row(phasors)
-    per_period = _turn(phasors[:, row])
-    if per_period is None:
-        return ()
-    stated_hz, fits = reference.frequency_hz, reference.frequency_hz * (1.0 + per_period)
-    message = (
-        f"the phase turns by {360.0 * per_period:+.3g} degrees a period against the given "
-        f"{stated_hz:.6g} Hz: {fits:.6g} Hz fits. The harmonics found are too small; give this "
-        "frequency, or take the phase from a channel"
-    )
-    return (Flag("frequency_differs", Severity.WARNING, message, names[row]),)
-
-
-def pulse_flags(
-    recording: Recording, reference: PhaseReference, reading: Harmonics
-) -> tuple[Flag, ...]:
-    """Return ``half_frequency`` where all channels move twice in what the pulses call a period.
-
-    A motion of many lines may do so by itself, and so may a single channel, such as a surge force.
-    """
-    is_single = recording.set_point is None or not recording.set_point.lines
-    if reference.source is not ReferenceSource.PHOTOCELL or not is_single or reading.order < 2:
-        return ()
-    first, second = reading.amplitude[:, 0], reading.amplitude[:, 1]
-    limit = reading.half_width()[:, 3:5].max(axis=1)  # noise has either now and then
-    if len(first) < 2 or not np.all(second > np.maximum(first, limit)):
-        return ()
-    frequency_hz = reading.frequency_hz
-    message = (
-        f"the second harmonic is above the first in all channels: the pulses come once in two "
-        f"periods, and the motion has {2.0 * frequency_hz:.5g} Hz, not {frequency_hz:.5g} Hz. "
-        "Is every second pulse lost? Else take the phase from a channel"
-    )
-    return (Flag("half_frequency", Severity.WARNING, message),)
-
-
-def _strongest_row(phasors: ComplexArray) -> int:
-    """Row of the channel whose amplitude is largest against its change from period to period."""
-    size = np.abs(phasors)
-    change = np.abs(np.diff(size, axis=0)).mean(axis=0)
-    return int(np.argmax(size.mean(axis=0) / np.maximum(change, 1e-12 * size.max(axis=0) + 1e-300)))
-
-
-def _turn(phasor: ComplexArray) -> float | None:
-    """Cycles by which a phasor turns from one period to the next; ``None`` if not steadily."""
-    steps = phasor[1:] * phasor[:-1].conj()
-    steps = steps / np.maximum(np.abs(steps), 1e-300)
-    if abs(steps.mean()) < _STEADY:
-        return None
-    turned = np.unwrap(np.angle(phasor)) / (2.0 * np.pi)
-    period = np.arange(len(turned)) - (len(turned) - 1) / 2.0
-    per_period = float(period @ turned / (period @ period))
-    cycles = abs(per_period) * (len(turned) - 1)
-    departure = np.abs(turned - turned.mean() - per_period * period).max()
-    return per_period if cycles > _NOTABLE_CYCLES and departure < _STRAIGHT * cycles else None
 
 
 def reference_flags(

@@ -29,6 +29,10 @@ class PeriodValues:
     coefficients: FloatArray
     ramp: FloatArray
 
+    def __getitem__(self, periods: slice) -> "PeriodValues":
+        """Return the values of some of the periods."""
+        return PeriodValues(self.coefficients[periods], self.ramp[periods])
+
 
 def solve_periods(sums: PeriodSums) -> PeriodValues:
     """Solve each period's normal equations alone; a void period gives NaN.

@@ -127,6 +127,24 @@ def test_pulses_of_every_second_turn_are_said(every: int, said: bool) -> None:
     assert ("half_frequency" in {flag.code for flag in analyse(run).flags}) == said
 
 
+@pytest.mark.parametrize("channels", [1, 3])
+@pytest.mark.parametrize(("marks", "said"), [(1, False), (2, True), (3, True)])
+def test_several_pulses_a_turn_are_said(marks: int, said: bool, channels: int) -> None:
+    """One of three channels moves twice a turn: with two marks as one ought to."""
+    values = np.stack((3.0 * MOTION + 0.5, MOTION, np.sin(4.0 * np.pi * TIME)))[:channels]
+    pulses = np.arange(0.2, 59.0, 1.0 / marks)
+    run = recording(values + noise(0.01, 4, channels), RATE_HZ)
+    found = [
+        flag
+        for flag in analyse(replace(run, photocell_edges_s=pulses)).flags
+        if flag.code == "double_frequency"
+    ]
+    assert bool(found) == said
+    if found:
+        assert found[0].severity is Severity.VOID
+        assert f"there are {marks} pulses a turn, and the motion has 1 Hz" in found[0].message
+
+
 def test_a_channel_that_moves_twice_a_turn_is_no_lost_pulse() -> None:
     """A surge force of a model that sways is alike to either side."""
     twice = np.sin(4.0 * np.pi * TIME)

@@ -83,6 +83,19 @@ def test_a_frequency_that_does_not_fit_is_named_with_the_one_that_does() -> None
     assert not found(run(None), "frequency_differs")
 
 
+@pytest.mark.parametrize(("set_hz", "said"), [(0.8, True), (0.83, False)])
+def test_a_set_point_that_tells_the_phase_is_held_against_the_motion(
+    set_hz: float, said: bool
+) -> None:
+    force = np.sin(2.0 * np.pi * 0.83 * np.arange(4000) / 100.0)
+    recording = Recording("run", (Channel("force", "N"),), force[None], 100.0)
+    flags = found(replace(recording, set_point=SetPoint(set_hz, 0.02, 0.0)), "frequency_differs")
+    assert bool(flags) == said
+    if said:
+        fits_hz = flags[0].message.split("against the set-point's 0.8 Hz: ")[1].split(" Hz")[0]
+        assert float(fits_hz) == pytest.approx(0.83, rel=1e-4)
+
+
 @given(st.floats(0.7, 1.3), st.floats(0.9, 1.1))
 def test_any_frequency_near_by_is_found(frequency_hz: float, ratio: float) -> None:
     given_hz = frequency_hz * ratio
