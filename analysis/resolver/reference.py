@@ -14,7 +14,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from hardware.description.arrays import FloatArray
+from hardware.description.arrays import BoolArray, FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
 
@@ -22,6 +22,11 @@ _WRAP_IN_DEGREES = 50.0  # no shaft turns as far between two samples: radians wr
 _STRAYS = 4.0  # times the median distance from the line: no knot of a motion that is steady
 _SWEEPS = 4
 KNOTS_PER_REVOLUTION = 256  # of an encoder: enough to follow gear ripple, few enough to keep
+_FEWEST_KNOTS = 4  # of an encoder per revolution, however loud
+_FAR = 12.0  # times the median distance of an angle's steps from the usual one: 8 deviations
+_FALL = 0.05  # turns, by which an angle lies behind what it was
+_SURE = 5.0  # standard deviations
+_NORMAL_90 = 1.645  # standard deviations, within which 9 in 10 of normal values lie
 
 
 class NoReferenceError(DataError):
@@ -138,6 +143,9 @@ def from_encoder(
 ) -> PhaseReference:
     """Build a reference from a shaft encoder.
 
+    Its knots are averages over a few samples, where one is too loud: if the highest readings
+    counted, noise would carry the phase ahead.
+
     Parameters
     ----------
     times_s, angle_rad
@@ -159,19 +167,84 @@ def from_encoder(
             f"units look wrong: the shaft angle jumps by {jump:.4g} rad from one sample to the "
             "next, which is a turn in degrees; say its unit, as in 'Angle:deg'"
         )
-    turns = np.unwrap(angle_rad) / (2.0 * np.pi)
-    flags: tuple[Flag, ...] = ()
+    turns = angle_rad / (2.0 * np.pi)
+    stray = _strays(turns)
+    flags = _stray_flags(times_s[stray])
+    times_s, turns = times_s[~stray], np.unwrap(turns[~stray], period=1.0)
     if turns[-1] < turns[0]:
         turns = -turns
-        flags = (Flag("reverse_rotation", Severity.NOTE, "the shaft turns backwards"),)
+        flags += (Flag("reverse_rotation", Severity.NOTE, "the shaft turns backwards"),)
     turns = turns + angle_offset_rad / (2.0 * np.pi)
     revolutions = turns[-1] - turns[0]
     if revolutions < 1.0:
         raise NoReferenceError(
             f"the shaft makes {revolutions:.2f} turns; at least one whole one is needed"
         )
-    step = max(1, int(len(turns) / revolutions / KNOTS_PER_REVOLUTION))
-    knots = np.append(np.arange(0, len(turns) - 1, step), len(turns) - 1)
-    rising = np.maximum.accumulate(turns[knots])
+    times_s, turns = _averages(times_s, turns, _block(turns))
+    rising = np.maximum.accumulate(turns)
+    flags += _fall_flags(times_s, rising - turns)
     moving = np.append(True, np.diff(rising) > 0.0)
-    return PhaseReference(ReferenceSource.ENCODER, times_s[knots][moving], rising[moving], flags)
+    return PhaseReference(ReferenceSource.ENCODER, times_s[moving], rising[moving], flags)
+
+
+def _strays(turns: FloatArray) -> BoolArray:
+    """Say which samples lie by themselves, as one that is read while the encoder wraps.
+
+    Those before and after it are two steps apart.
+    """
+    stray = np.zeros(len(turns), dtype=bool)
+    if len(turns) < 3:
+        return stray
+    steps = _wrapped(np.diff(turns))
+    usual = float(np.median(steps))
+    away = np.abs(_wrapped(steps - usual))
+    limit = _FAR * float(np.median(away)) + 2.0 * abs(usual)
+    apart = np.abs(_wrapped(turns[2:] - turns[:-2] - 2.0 * usual))
+    stray[1:-1] = (away[:-1] > limit) & (away[1:] > limit) & (apart < limit)
+    return stray
+
+
+def _wrapped(turns: FloatArray) -> FloatArray:
+    return np.asarray(turns - np.rint(turns))
+
+
+def _stray_flags(times_s: FloatArray) -> tuple[Flag, ...]:
+    if not times_s.size:
+        return ()
+    where = ", ".join(f"{time_s:.3f} s" for time_s in times_s[:5])
+    message = f"{times_s.size} samples of the shaft angle lie by themselves, left out: {where}"
+    return (Flag("angle_stray", Severity.WARNING, message),)
+
+
+def _fall_flags(times_s: FloatArray, fallen: FloatArray) -> tuple[Flag, ...]:
+    """Say where the angle is behind what it was before, by more than noise or a shaft at rest."""
+    back = np.flatnonzero(fallen > _FALL)
+    if not back.size:
+        return ()
+    message = (
+        f"the shaft angle falls back by {360.0 * fallen.max():.3g} degrees from "
+        f"{times_s[back[0]]:.3f} s to {times_s[back[-1]]:.3f} s, as if it stood still; "
+        "choose a gate without it"
+    )
+    return (Flag("angle_falls_back", Severity.VOID, message),)
+
+
+def _block(turns: FloatArray) -> int:
+    """Return how many samples make a knot: enough for its noise not to turn the shaft back."""
+    per_sample = float(turns[-1] - turns[0]) / len(turns)
+    second = np.abs(np.diff(turns, n=2))
+    noise = float(np.quantile(second, 0.9)) / (_NORMAL_90 * np.sqrt(6.0))
+    # The noise of two knots' difference is sqrt(2 / m) of a sample's, and they are m steps apart.
+    quiet = int(np.ceil((_SURE * np.sqrt(2.0) * noise / per_sample) ** (2.0 / 3.0)))
+    most = int(1.0 / per_sample / _FEWEST_KNOTS)
+    return max(1, int(1.0 / per_sample / KNOTS_PER_REVOLUTION), min(quiet, most))
+
+
+def _averages(times_s: FloatArray, turns: FloatArray, size: int) -> tuple[FloatArray, FloatArray]:
+    """Return times and turns averaged over so many samples, carried on straight to both ends."""
+    if size == 1:
+        return times_s, turns
+    count = len(turns) // size * size
+    middle_s, means = (part[:count].reshape(-1, size).mean(axis=1) for part in (times_s, turns))
+    knots_s = np.concatenate((times_s[:1], middle_s, times_s[-1:]))
+    return knots_s, _interpolate(knots_s, middle_s, means)

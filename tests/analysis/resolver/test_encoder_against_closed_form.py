@@ -8,6 +8,7 @@ from analysis.resolver.photocell import from_photocell
 from analysis.resolver.reference import from_encoder
 from analysis.resolver.sums import period_sums
 from hardware.description.errors import DataError
+from hardware.description.flags import Severity
 from tests.analysis.resolver.signals import FloatArray, recording
 
 RATE_HZ = 200.0
@@ -80,6 +81,47 @@ def test_noise_at_rest_does_not_turn_the_phase_back() -> None:
     assert np.all(np.diff(reference.times_s) > 0.0)
     inside = reference.cycles_at(TIME[1200:]) - angle[1200:] / (2.0 * np.pi)
     assert np.abs(inside).max() < 2e-3
+
+
+@pytest.mark.parametrize("wrapped", [False, True])
+@pytest.mark.parametrize("noise_deg", [0.1, 1.0, 3.0])
+@pytest.mark.parametrize("rate_hz", [200.0, 1000.0])
+def test_noise_does_not_carry_the_phase_ahead(
+    noise_deg: float, wrapped: bool, rate_hz: float
+) -> None:
+    """The highest readings of 3 degrees' noise are 2 degrees ahead on average."""
+    time = np.arange(20.0 * rate_hz) / rate_hz
+    angle = 2.0 * np.pi * 1.03 * time + 0.6
+    noise = np.radians(noise_deg) * np.random.default_rng(12).normal(size=time.size)
+    reading = (angle + noise) % (2.0 * np.pi) if wrapped else angle + noise
+    reference = from_encoder(time, reading)
+    ahead = 2.0 * np.pi * reference.cycles_at(time) - angle
+    ahead -= 2.0 * np.pi * np.rint(ahead.mean() / 2.0 / np.pi)
+    assert abs(np.degrees(ahead).mean()) < 4.0 * noise_deg / np.sqrt(time.size)
+    assert not reference.flags
+
+
+@pytest.mark.parametrize("reads_deg", [90.0, 180.0, 270.0])
+def test_a_sample_read_while_the_encoder_wraps_is_left_out(reads_deg: float) -> None:
+    reading = ANGLE % (2.0 * np.pi)
+    wraps = np.flatnonzero(np.diff(reading) < 0.0)[3:9:2]
+    reading[wraps] = np.radians(reads_deg)
+    reference = from_encoder(TIME, reading)
+    assert reference.cycles_at(TIME) == pytest.approx(ANGLE / 2.0 / np.pi, abs=1e-9)
+    (flag,) = reference.flags
+    assert flag.code == "angle_stray"
+    assert "3 samples" in flag.message
+    assert f"{TIME[wraps[0]]:.3f} s" in flag.message
+
+
+def test_an_angle_that_falls_back_is_flagged() -> None:
+    """A coupling that slips by 40 degrees after 10 s is caught up with 40 / 360 turns later."""
+    reading = ANGLE - np.radians(40.0) * (TIME >= 10.0)
+    reference = from_encoder(TIME, reading)
+    (flag,) = reference.flags
+    assert (flag.code, flag.severity) == ("angle_falls_back", Severity.VOID)
+    assert "falls back by 38.1 degrees from 10.000 s" in flag.message  # 40 less one step
+    assert reference.cycles_at(TIME[:2000]) == pytest.approx(ANGLE[:2000] / 2.0 / np.pi, abs=1e-9)
 
 
 @pytest.mark.slow
