@@ -8,6 +8,7 @@ from analysis.resolver.period_values import PeriodValues, solve_periods, usable
 from analysis.resolver.reference import PhaseReference, ReferenceSource
 from analysis.resolver.settings import ResolverSettings
 from analysis.resolver.sums import PeriodSums, period_sums
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import CARRIAGE_SPEED
 from hardware.description.flags import Flag, Severity
 
@@ -150,18 +151,16 @@ def held_flags(recording: Recording, opened_s: float, closed_s: float) -> tuple[
     """Return a flag for each channel that keeps each value for an even number of samples.
 
     A sensor that is slower than the recording stands still in between: its signal is late by half
-    of that. Steps of a coarse converter last unevenly, long where the signal turns round. A
-    carriage's speed is polled, and its age is known (:mod:`analysis.response.following`).
+    of that. A carriage's speed is polled, and its age is known
+    (:mod:`analysis.response.following`).
     """
     used = recording.between(opened_s, closed_s)
     flags = []
     for name in used.channel_names:
         if name == CARRIAGE_SPEED.name:
             continue
-        changes = np.flatnonzero(np.diff(used.values(name)) != 0.0)
-        lasting = np.diff(changes)
-        usual = float(lasting.mean()) if lasting.size >= _FEWEST_STEPS else 1.0
-        if usual < _HELD or np.mean(np.abs(lasting - usual) < 1.0) < _EVENLY:
+        usual = _held_samples(used.values(name))
+        if usual < _HELD:
             continue
         late_ms = 500.0 * (usual - 1.0) / recording.sample_rate_hz
         message = (
@@ -172,6 +171,23 @@ def held_flags(recording: Recording, opened_s: float, closed_s: float) -> tuple[
         )
         flags.append(Flag("held", Severity.WARNING, message, name))
     return tuple(flags)
+
+
+def _held_samples(values: FloatArray) -> float:
+    """Return how many samples each value stands for; 1 where they last unevenly, or by their steps.
+
+    A slack wire or a stop rests long now and then, which is no usual time. Values of a coarse
+    converter wait for the next step: most change by a single one, a slow sensor's by any.
+    """
+    steps = np.diff(values)
+    changes = np.flatnonzero(steps)
+    lasting, heights = np.diff(changes), np.abs(steps[changes])
+    if lasting.size < _FEWEST_STEPS:
+        return 1.0
+    usual = float(lasting[lasting <= 2.0 * np.median(lasting)].mean())
+    evenly = np.mean(np.abs(lasting - usual) < 1.0) >= _EVENLY
+    single = np.mean(heights < 1.5 * heights.min()) > 0.5
+    return usual if evenly and not single else 1.0
 
 
 def reference_flags(

@@ -175,3 +175,27 @@ def test_coarse_steps_are_no_slow_sensor(step: float, size: float) -> None:
     values = step * np.round((np.stack((MOTION, 0.3 * MOTION)) + noise(size, 5, 2)) / step)
     run = replace(recording(values, RATE_HZ), photocell_edges_s=np.arange(0.0, 59.0))
     assert "held" not in {flag.code for flag in analyse(run).flags}
+
+
+def held(values: FloatArray) -> bool:
+    run = replace(recording(values, RATE_HZ), photocell_edges_s=np.arange(0.0, 59.0))
+    return "held" in {flag.code for flag in analyse(run).flags}
+
+
+def test_long_rests_are_no_slow_sensor() -> None:
+    """A slack wire rests half of the time, and its values last 1.9 samples on average."""
+    slack = np.maximum(MOTION, 0.0)
+    loud = np.where(slack > 0.0, slack + noise(0.01)[0], 0.0)
+    clipped = np.clip(MOTION, -0.8, 0.8)
+    for values in (slack, loud, clipped):
+        assert not held(values)
+
+
+@pytest.mark.parametrize("samples_a_step", [1.7, 2.5, 5.0])
+def test_a_straight_signal_in_coarse_steps_is_no_slow_sensor(samples_a_step: float) -> None:
+    triangle = np.arcsin(MOTION) * RATE_HZ / (2.0 * np.pi)  # one step of 1 in a sample
+    assert not held(np.round(triangle / samples_a_step))
+
+
+def test_a_slow_sensor_in_coarse_steps_is_said() -> None:
+    assert held(np.round(20.0 * np.repeat(MOTION[::5], 5)))
