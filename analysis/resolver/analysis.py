@@ -7,7 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from analysis.recording import Recording
-from analysis.resolver.checks import gate_flags, held_flags, reference_flags, saturation_flags
+from analysis.resolver.checks import (
+    coarse_flags,
+    gate_flags,
+    held_flags,
+    reference_flags,
+    saturation_flags,
+)
 from analysis.resolver.estimate import resolve
 from analysis.resolver.frequency_checks import frequency_flags, pulse_flags
 from analysis.resolver.hann import resolve_hann
@@ -115,7 +121,8 @@ def analyse(
         + flags
         + reference_flags(recording, stated_reference, steady, settings)
         + saturation_flags(chosen, float(steady.opened_s[0]), float(steady.closed_s[-1]))
-        + held_flags(chosen, float(steady.opened_s[0]), float(steady.closed_s[-1])),
+        + held_flags(chosen, float(steady.opened_s[0]), float(steady.closed_s[-1]))
+        + coarse_flags(chosen, float(steady.opened_s[0]), float(steady.closed_s[:5][-1])),
     )
 
 

@@ -22,6 +22,10 @@ _ROUNDED = 1.0 - 1e-9  # of the full scale
 _FEWEST_STEPS = 20  # of a channel that is held: fewer may be even by chance
 _HELD = 1.5  # samples that a value stands for
 _EVENLY = 0.9  # of the steps
+_LOOKED_AT = 4000  # samples of some periods, in which a channel of coarse steps has few values
+_MOST_VALUES = 50  # of them
+_DITHERED = 0.5  # steps of noise: with as much the error of rounding is gone
+_COARSE = 0.375  # largest error of a harmonic of a sine in steps, times the root of its amplitude
 
 
 def gate_flags(gate: PeriodSums, result: Harmonics) -> tuple[Flag, ...]:
@@ -171,6 +175,50 @@ def held_flags(recording: Recording, opened_s: float, closed_s: float) -> tuple[
         )
         flags.append(Flag("held", Severity.WARNING, message, name))
     return tuple(flags)
+
+
+def coarse_flags(recording: Recording, opened_s: float, closed_s: float) -> tuple[Flag, ...]:
+    """Return a flag for each channel that moves over few steps of its numbers, without noise.
+
+    Rounded alike in all periods, its harmonics are off by what does not scatter between them: by up
+    to 0.375 steps over the root of the amplitude in steps (Bessel functions of both).
+
+    Parameters
+    ----------
+    opened_s, closed_s
+        A few whole periods: what lies between them is looked at.
+    """
+    used = recording.between(opened_s, closed_s)
+    every = -(-used.sample_count // _LOOKED_AT)
+    flags = []
+    for channel in used.channels:
+        values = used.values(channel.name)[::every]
+        step, amplitude = _steps(values[np.isfinite(values)])
+        error = _COARSE / np.sqrt(amplitude - 0.5)  # rounded up by as much, it may be
+        if error <= _NOTABLE * amplitude:
+            continue
+        message = (
+            f"the numbers have steps of {step:.3g} {channel.unit}, over {amplitude:.2g} of which "
+            f"the channel moves to either side with less noise than half a step: harmonics may be "
+            f"off by {error * step:.2g} {channel.unit}, beyond their intervals; record it with "
+            "more digits, or over a smaller range"
+        )
+        flags.append(Flag("coarse_steps", Severity.WARNING, message, channel.name))
+    return tuple(flags)
+
+
+def _steps(values: FloatArray) -> tuple[float, float]:
+    """Return the step that all values are multiples of and the amplitude in steps, or no end."""
+    levels = np.unique(values)
+    if not 3 <= len(levels) <= _MOST_VALUES:
+        return 0.0, np.inf
+    apart = np.diff(levels)
+    step = float(apart.min())
+    whole = np.abs(apart / step - np.rint(apart / step)).max() < 0.01
+    noise = float(np.sqrt((np.diff(values, n=2) ** 2).mean() / 6.0))
+    if not whole or noise > _DITHERED * step:
+        return 0.0, np.inf
+    return step, float(levels[-1] - levels[0]) / step / 2.0
 
 
 def _held_samples(values: FloatArray) -> float:

@@ -199,3 +199,27 @@ def test_a_straight_signal_in_coarse_steps_is_no_slow_sensor(samples_a_step: flo
 
 def test_a_slow_sensor_in_coarse_steps_is_said() -> None:
     assert held(np.round(20.0 * np.repeat(MOTION[::5], 5)))
+
+
+@pytest.mark.parametrize("amplitude", np.linspace(1.0, 9.0, 17))
+def test_what_coarse_steps_may_do_is_said_and_never_exceeded(amplitude: float) -> None:
+    """The error of a sine in whole steps, integrated with 100,000 samples a period."""
+    angle = 2.0 * np.pi * (np.arange(100_000) + 0.5) / 100_000
+    errors = []
+    for offset in np.linspace(0.0, 1.0, 11):
+        rounded = np.round(amplitude * np.sin(angle) + offset)
+        errors.append(abs(2.0 * np.mean(rounded * np.sin(angle)) - amplitude))
+    coarse = np.round(amplitude * MOTION + noise(0.01)[0])
+    run = replace(recording(0.1 * coarse, RATE_HZ), photocell_edges_s=np.arange(0.0, 59.0))
+    (flag,) = [flag for flag in analyse(run).flags if flag.code == "coarse_steps"]
+    assert "steps of 0.1 N" in flag.message
+    said = 10.0 * float(flag.message.split("off by ")[1].split(" N")[0])
+    assert max(errors) <= said
+    assert said < 0.8 / np.sqrt(amplitude)
+
+
+@pytest.mark.parametrize(("amplitude", "size"), [(13.0, 0.0), (3.0, 0.6), (100.0, 0.0)])
+def test_fine_steps_and_dithered_ones_are_not_worth_a_word(amplitude: float, size: float) -> None:
+    values = np.round(amplitude * MOTION + noise(size)[0])
+    run = replace(recording(values, RATE_HZ), photocell_edges_s=np.arange(0.0, 59.0))
+    assert "coarse_steps" not in {flag.code for flag in analyse(run).flags}
