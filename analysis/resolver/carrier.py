@@ -247,7 +247,7 @@ def _phase(name: str, signal: ComplexArray, given_rad: float | None) -> tuple[fl
     if given_rad is None:
         message = (
             f"carrier phase {phase:.6f} rad taken from the quadrature's null; the sign of the "
-            "signal is not known: if it comes out reversed, give this phase plus pi"
+            "signal is not known: if it comes out reversed, put a '-' before its column"
         )
         flags.append(Flag("carrier_phase_estimated", Severity.NOTE, message, channel=name))
     if quadrature_share > QUADRATURE_LIMIT:

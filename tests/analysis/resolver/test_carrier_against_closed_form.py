@@ -1,5 +1,7 @@
 """Phase-sensitive detection against the signal that was put on the carrier."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.signal import freqz
@@ -77,6 +79,15 @@ def test_the_phase_is_found_where_the_quadrature_vanishes(phase_rad: float) -> N
     (flag,) = [flag for flag in out.flags if flag.code == "carrier_phase_estimated"]
     assert f"{phase_rad:.6f} rad" in flag.message.replace("-0.000000", "0.000000")
     assert "sign of the signal is not known" in flag.message
+
+
+def test_turning_the_column_s_sign_turns_the_signal_as_is_advised() -> None:
+    raw = bridge()
+    turned = replace(raw, samples=-np.asarray(raw.samples[:, 0 : raw.sample_count]))
+    out = demodulate(turned, ["raw"], CARRIER_HZ)
+    assert out.values("raw") == pytest.approx(-force(out.time_s()), abs=1e-5)
+    (flag,) = [flag for flag in out.flags if flag.code == "carrier_phase_estimated"]
+    assert "put a '-' before its column" in flag.message
 
 
 def test_a_phase_beyond_a_quarter_turn_comes_out_reversed() -> None:
