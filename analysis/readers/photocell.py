@@ -64,6 +64,8 @@ def _crossing(
 def read_edges(path: Path) -> FloatArray:
     """Read a CSV of edge times: its only column, or the one named as time; seconds by default.
 
+    Empty lines and cells are passed over.
+
     Raises
     ------
     DataError
@@ -74,7 +76,8 @@ def read_edges(path: Path) -> FloatArray:
     header = _time_header(layout.headers, path)
     numbers = read_numbers(source, layout, [header])
     factor = unit(header.unit).factor if header.unit else 1.0
-    return check_edges(numbers.columns[header] * factor, str(path))
+    edges_s = numbers.columns[header] * factor
+    return check_edges(edges_s[~np.isnan(edges_s)], str(path))
 
 
 def _time_header(headers: tuple[Header, ...], path: Path) -> Header:

@@ -46,6 +46,11 @@ class FoundLayout:
     first_day: Days = NO_DAY
 
     @property
+    def is_single(self) -> bool:
+        """Whether there is one column only, so that an empty line is a missing value."""
+        return len(self.headers) == 1
+
+    @property
     def fewest_cells(self) -> int:
         """Cells that every row must have: up to the last column that has a name."""
         named = [header.number for header in self.headers if header.text]
@@ -188,10 +193,10 @@ def _headless_layout(
 
 
 def _with_header(bare: FoundLayout, body: list[tuple[int, str]], where: str) -> FoundLayout:
-    (last_line, header), *rows = body
+    (_, header), *rows = body
     names = _header_cells(header, bare.separator)
     if rows and (united := _with_units(names, bare.cells(rows[0][1]))):
-        names, (last_line, _), *rows = united, *rows
+        names, rows = united, rows[1:]
     if not rows:
         raise DataError(f"{where}: there are no rows of data under the header")
     first_number, first = rows[0]
@@ -200,7 +205,7 @@ def _with_header(bare: FoundLayout, body: list[tuple[int, str]], where: str) -> 
         names.append("")  # every row ends with a separator
     if len(cells) > len(names):
         raise too_many_cells(where, first_number, len(cells), len(names))
-    return _headed_layout(bare, names, cells, last_line, where)
+    return _headed_layout(bare, names, cells, first_number - 1, where)
 
 
 def _headed_layout(
@@ -236,11 +241,13 @@ def _header_cells(line: str, separator: str) -> list[str]:
 def _with_units(names: list[str], cells: list[str]) -> list[str] | None:
     """Return names with the units of a line below them; ``None`` where it is none of units.
 
-    It has as many cells as names, no number among them, and a known unit; brackets may be round it.
+    It has as many cells as names, no number among them but the unit 1, and another known unit;
+    brackets may be round it.
     """
     units = [cell.strip("()[]") for cell in cells]
-    numbers = [cell for cell in units if cell[-1:].isdigit()]
-    if len(units) != len(names) or numbers or not any(map(is_unit, units)):
+    numbers = [cell for cell in units if cell[-1:].isdigit() and not is_unit(cell)]
+    known = [cell for cell in units if is_unit(cell) and cell != "1"]
+    if len(units) != len(names) or numbers or not known:
         return None
     return [f"{a} [{b}]" if b else a for a, b in zip(names, units, strict=True)]
 
@@ -256,20 +263,24 @@ def _is_data(layout: FoundLayout, cells: list[str]) -> bool:
 
 
 def _separator(lines: list[str], layout: TextLayout, missing: tuple[str, ...]) -> tuple[str, str]:
-    """Return the separator and decimal sign with which most of the first lines are numbers."""
+    """Return the separator and decimal sign with which most of the first lines are numbers.
+
+    With a column of text none are: then it is most of their cells.
+    """
     choices = [
         (separator, decimal)
         for separator, decimal in _SEPARATORS
         if layout.decimal in (None, decimal) and layout.separator is None
     ] or [(layout.separator or ",", decimal) for decimal in (layout.decimal or ".,")]
-    best, best_score = choices[0], (-1, -1)
+    best, best_score = choices[0], (-1, -1, -1)
     lines = lines[: max(1, min(_SAMPLE_LINES, LONGEST_LINE // max(map(len, lines))))]
     for separator, decimal in choices:
         trial = FoundLayout((), separator, decimal, 0, missing)
         rows = [trial.cells(line) for line in lines]
         numeric = sum(_is_data(trial, row) for row in rows)
+        numbers = sum(_is_data(trial, [cell]) for row in rows for cell in row)
         # A date and its time, a blank between, are one cell where another separator does.
-        score = (numeric, 0 if separator == " " else len(rows[-1]))
+        score = (numeric, 0 if separator == " " else len(rows[-1]), numbers)
         if score > best_score:
             best, best_score = (separator, decimal), score
     return best

@@ -1,7 +1,7 @@
 """The numbers of a text file, read a stretch at a time: nothing of the text is kept."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -111,7 +111,7 @@ def _read(
     text: bytes, line: int, layout: FoundLayout, wanted: Sequence[Header], where: str
 ) -> Iterable[Iterable[FloatArray]]:
     """Read whole lines, the first of which is line ``line`` of the file."""
-    if not text.strip():
+    if not (text if layout.is_single else text.strip()):
         return [[]] * len(wanted)
     columns = _read_fast(text, layout, wanted)
     if columns is not None:
@@ -134,7 +134,7 @@ def _read_fast(
                 column_names=[str(header.number) for header in layout.headers],
                 use_threads=False,  # one block at a time is the least work
             ),
-            csv.ParseOptions(delimiter=layout.separator),
+            csv.ParseOptions(delimiter=layout.separator, ignore_empty_lines=not layout.is_single),
             csv.ConvertOptions(
                 column_types=dict.fromkeys(columns, pa.float64()),
                 include_columns=columns,
@@ -172,10 +172,10 @@ def _read_carefully(
 ) -> FloatArray:
     """Read cell by cell, and say where the first thing wrong is."""
     rows = []
-    for number, line in enumerate(decoded(text).split("\n"), first):
-        if not line.strip():
+    for number, line in enumerate(decoded(text).removesuffix("\n").split("\n"), first):
+        if not line.strip() and not layout.is_single:
             continue
-        cells = layout.cells(line)
+        cells = layout.cells(line) if line.strip() else [""]
         if len(cells) > len(layout.headers):
             raise too_many_cells(where, number, len(cells), len(layout.headers))
         if len(cells) < layout.fewest_cells:
@@ -187,6 +187,16 @@ def _read_carefully(
     return np.array(rows, dtype=np.float64).reshape(-1, len(wanted)).T
 
 
+def _decimal_hint(cell: str, layout: FoundLayout) -> str:
+    """Say what to do about a number with the other decimal sign."""
+    other = "," if layout.decimal == "." else "."
+    try:
+        replace(layout, decimal=other).number(cell)
+    except ValueError:
+        return ""
+    return f"with decimal = '{other}' in the column map it is; else "
+
+
 def _number(cells: list[str], header: Header, layout: FoundLayout, where: str) -> float:
     cell = cells[header.number - 1]
     try:
@@ -194,7 +204,7 @@ def _number(cells: list[str], header: Header, layout: FoundLayout, where: str) -
     except ValueError:
         raise DataError(
             f"{where}, column {header.text or header.generic!r}: {cell!r} is not a number; "
-            "correct it, leave the column out of the column map, or, where it stands for a "
-            "missing value, list it there under missing (times are 12:00:01.5, or "
-            "2025-03-01 12:00:01.5)"
+            f"{_decimal_hint(cell, layout)}correct it, leave the column out of the column map, or, "
+            "where it stands for a missing value, list it there under missing (times are "
+            "12:00:01.5, or 2025-03-01 12:00:01.5)"
         ) from None

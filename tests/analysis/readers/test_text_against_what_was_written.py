@@ -131,6 +131,22 @@ def test_a_line_of_units_under_the_header(tmp_path: Path) -> None:
     assert recording.sample_rate_hz == pytest.approx(100e3, rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("written", "kept"), [("m/s2", "m/s2"), ("m/s^2", "m/s2"), ("m/s²", "m/s2"), ("(1)", "1")]
+)
+def test_a_line_of_units_that_end_in_a_digit(tmp_path: Path, written: str, kept: str) -> None:
+    recording = read(tmp_path, table(f"Time,a\ns,{written}"))
+    assert recording.channels == (Channel("a", kept),)
+    assert recording.sample_count == COUNT
+
+
+def test_a_first_row_of_ones_is_no_line_of_units(tmp_path: Path) -> None:
+    rows = [f"{n},{n % 3}" for n in range(1, 31)]
+    recording = read(tmp_path, "\n".join(["Time [s],F [N]", *rows, ""]))
+    assert recording.values("F")[0] == 1.0
+    assert recording.sample_count == 30
+
+
 @pytest.mark.parametrize("header", ["time", "Time", "t", "T (s)", "time_s", "Zeit [s]"])
 def test_time_is_found_by_its_name(tmp_path: Path, header: str) -> None:
     recording = read(tmp_path, table(f"{header},F [N]"))
@@ -225,6 +241,27 @@ def test_missing_cells_and_own_marks_of_missing(tmp_path: Path) -> None:
     assert recording.values("F") == pytest.approx(signal(), abs=2e-5)
 
 
+@pytest.mark.parametrize("odd", ["", "  ", "\t"])
+def test_an_empty_line_of_a_single_column_is_a_missing_value(tmp_path: Path, odd: str) -> None:
+    """Within the data, that is: those above and below are no rows."""
+    values = signal()
+    cells = [repr(float(value)) for value in values]
+    cells[30:32], cells[60:65] = [odd] * 2, [odd] * 5
+    recording = read(tmp_path, "\n".join(["F [N]", "", *cells, "", "", ""]), sample_rate_hz=100.0)
+    assert sorted(codes(recording)) == ["missing", "repaired"]
+    found = recording.values("F")
+    lost = np.isnan(found)
+    assert np.flatnonzero(lost).tolist() == [60, 61, 62, 63, 64]
+    assert found[~lost] == pytest.approx(values[~lost], abs=2e-5)
+
+
+def test_decimal_commas_beside_a_column_of_text(tmp_path: Path) -> None:
+    rows = [f"{n / 100:.2f};{value};OK".replace(".", ",") for n, value in enumerate(signal())]
+    columns = parse_column_map({"time": "Zeit:s", "channels": {"F": "Kraft:N"}}, "map")
+    recording = read(tmp_path, "\n".join(["Zeit;Kraft;Status", *rows, ""]), columns)
+    np.testing.assert_array_equal(recording.values("F"), signal())
+
+
 def test_one_empty_channel_beside_a_good_one(tmp_path: Path) -> None:
     text = "\n".join(
         ["Time [s],F [N],G [N]", *(f"{n / 100},{f}," for n, f in enumerate(signal())), ""]
@@ -289,7 +326,7 @@ def test_photocell_level_becomes_edges(tmp_path: Path) -> None:
 
 
 def test_photocell_times_from_a_file_beside(tmp_path: Path) -> None:
-    (tmp_path / "run_edges.csv").write_text("edge [ms]\n100.25\n500.5\n")
+    (tmp_path / "run_edges.csv").write_text("edge [ms]\n100.25\n\n500.5\n\n")
     columns = parse_column_map({"photocell": {"edges_file": "{stem}_edges.csv"}}, "map")
     recording = read(tmp_path, table("Time [s],F [N]"), columns)
     assert recording.photocell_edges_s == pytest.approx([0.10025, 0.5005], abs=1e-15)

@@ -137,6 +137,14 @@ def test_line_number_counts_blank_lines_and_preamble(tmp_path: Path) -> None:
     refused(written(tmp_path, text), f"line {line}, .*'5.5x'")
 
 
+def test_decimal_commas_behind_whole_numbers_name_the_remedy(tmp_path: Path) -> None:
+    rows = [f"{n};{n % 3}{',5' if n > 30 else ''}" for n in range(50)]
+    text = "\n".join(["Zeit [s];Kraft [N]", *rows, ""])
+    refused(written(tmp_path, text), "line 33, .*'1,5' is not a number; with decimal = ','")
+    columns = parse_column_map({"decimal": ","}, "map")
+    assert read_recording(written(tmp_path, text), columns).values("Kraft")[31] == 1.5
+
+
 def test_too_many_cells(tmp_path: Path) -> None:
     text = GOOD.replace("1.50,3.5", "1.50,3.5,9")
     refused(written(tmp_path, text), "line 152 has 3 cells, the header has 2")

@@ -71,6 +71,20 @@ def test_the_line_is_the_files(tmp_path: Path, block: int) -> None:
         read(path, block)
 
 
+@pytest.mark.parametrize("block", [1, 2, 5, 13])
+@pytest.mark.parametrize("odd", ["", " "])
+def test_empty_lines_of_a_single_column(tmp_path: Path, block: int, odd: str) -> None:
+    cells = [str(value) for value in VALUES]
+    cells[20:25] = [odd] * 5
+    path = tmp_path / "run.csv"
+    path.write_text("\n".join(["F [N]", *cells, ""]), encoding="utf-8")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(text_source, "_BLOCK", block)
+        found = read_recording(path, sample_rate_hz=8.0).values("F")
+    assert np.flatnonzero(np.isnan(found)).tolist() == [20, 21, 22, 23, 24]
+    assert np.array_equal(np.delete(found, np.s_[20:25]), np.delete(VALUES, np.s_[20:25]))
+
+
 def test_progress_goes_from_nothing_to_all(tmp_path: Path) -> None:
     path = tmp_path / "run.csv"
     path.write_text(table(",", ".", "\n", "\n"))
