@@ -140,7 +140,7 @@ def harmonics_by_bins(
         Variance of the mean in white noise, over that of whole periods.
     """
     scatter = scatter_of(plain, plain, drift)
-    means = np.linalg.qr(scatter.deviations[:, :, 0], mode="r").T * np.sqrt(mean_cost)
+    means = np.asarray(np.linalg.qr(scatter.deviations[:, :, 0], mode="r")).T * np.sqrt(mean_cost)
     channels, size = coefficients.shape
     every = np.zeros((channels, size, means.shape[1] + deviations.shape[2]))
     every[:, 0, : means.shape[1]] = means
