@@ -22,7 +22,7 @@ _ROUNDED = 1.0 - 1e-9  # of the full scale
 _FEWEST_STEPS = 20  # of a channel that is held: fewer may be even by chance
 _HELD = 1.5  # samples that a value stands for
 _EVENLY = 0.9  # of the steps
-_LOOKED_AT = 4000  # samples of some periods, in which a channel of coarse steps has few values
+_LOOKED_AT = 1000  # samples of some periods, in which a channel of coarse steps has few values
 _MOST_VALUES = 50  # of them
 _DITHERED = 0.5  # steps of noise: with as much the error of rounding is gone
 _COARSE = 0.375  # largest error of a harmonic of a sine in steps, times the root of its amplitude
@@ -229,9 +229,10 @@ def _held_samples(values: FloatArray) -> float:
     """
     steps = np.diff(values)
     changes = np.flatnonzero(steps)
-    lasting, heights = np.diff(changes), np.abs(steps[changes])
-    if lasting.size < _FEWEST_STEPS:
+    lasting = np.diff(changes)
+    if lasting.size < _FEWEST_STEPS or lasting.mean() < _HELD:
         return 1.0
+    heights = np.abs(steps[changes])
     usual = float(lasting[lasting <= 2.0 * np.median(lasting)].mean())
     evenly = np.mean(np.abs(lasting - usual) < 1.0) >= _EVENLY
     single = np.mean(heights < 1.5 * heights.min()) > 0.5
