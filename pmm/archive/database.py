@@ -8,7 +8,7 @@ from typing import Final
 
 from hardware.description.errors import ConfigurationError
 
-VERSION: Final = 2
+VERSION: Final = 3
 _PATIENCE_S: Final = 60.0  # while another process writes
 _TABLES: Final = """
 CREATE TABLE campaigns (
@@ -24,6 +24,7 @@ CREATE TABLE runs (
     run TEXT NOT NULL, kind TEXT NOT NULL, outcome TEXT NOT NULL, repeat INTEGER NOT NULL,
     frequency_hz REAL, eccentricity_m REAL, strut_phase_rad REAL, carriage_speed_m_s REAL,
     medium TEXT NOT NULL, drift_rad REAL, recording TEXT, sha256 TEXT, recorded_utc TEXT,
+    settings TEXT NOT NULL,
     UNIQUE (campaign, run));
 CREATE TABLE harmonics (
     campaign INTEGER NOT NULL REFERENCES campaigns ON DELETE CASCADE,

@@ -8,6 +8,7 @@ from pathlib import Path
 from hardware.description.errors import DataError
 from pmm.archive.contents import Contents, Stamp, recorded_utc
 from pmm.archive.notebook import NoteLine
+from pmm.archive.repeats import settings_of
 from pmm.archive.results import LEVEL, AnalysedCampaign, HarmonicValue
 from pmm.remote import url_of
 
@@ -81,12 +82,12 @@ def _insert(connection: sqlite3.Connection, contents: Contents, now_utc: str) ->
             (key, run.name, str(run.kind), run.outcome, run.repeat, set_point.frequency_hz,
              set_point.eccentricity_m, set_point.strut_phase_rad, set_point.carriage_speed_m_s,
              str(set_point.medium), set_point.drift_rad, place,
-             None if place is None else contents.stamps[place].sha256, time)
+             None if place is None else contents.stamps[place].sha256, time, settings_of(run))
         )  # fmt: skip
     connection.executemany(
         "INSERT INTO runs (campaign, run, kind, outcome, repeat, frequency_hz, eccentricity_m, "
-        "strut_phase_rad, carriage_speed_m_s, medium, drift_rad, recording, sha256, recorded_utc) "
-        "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+        "strut_phase_rad, carriage_speed_m_s, medium, drift_rad, recording, sha256, recorded_utc, "
+        "settings) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
         rows,
     )
 

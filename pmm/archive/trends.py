@@ -11,10 +11,11 @@ import numpy as np
 
 from hardware.description.errors import DataError
 from pmm.archive.queries import Row, rows_of, the_run, what_is_there
+from pmm.archive.repeats import settings_alike
 
 FEWEST = 3  # campaigns: two others tell a scatter
 _PARTS: Final = {"in_phase": "in phase", "quadrature": "quadrature"}
-# A set-point is the same within what drives and drawings state. CROSS: the runs come first.
+# CROSS: the runs come first.
 _REPEATS: Final = """
 SELECT coalesce(runs.recorded_utc, campaigns.recorded_utc) AS recorded_utc, runs.run,
     campaigns.campaign, campaigns.folder, campaigns.hull, harmonics.unit,
@@ -23,13 +24,8 @@ SELECT coalesce(runs.recorded_utc, campaigns.recorded_utc) AS recorded_utc, runs
 FROM runs JOIN campaigns ON campaigns.id = runs.campaign
 CROSS JOIN harmonics ON harmonics.run = runs.id
     AND gate = (SELECT min(gate) FROM harmonics WHERE run = runs.id)
-WHERE channel = :channel AND ord = :order AND hull = :hull AND kind = :kind AND medium = :medium
-    AND (frequency_hz IS :frequency_hz OR abs(frequency_hz - :frequency_hz) <= 1e-4)
-    AND (eccentricity_m IS :eccentricity_m OR abs(eccentricity_m - :eccentricity_m) <= 1e-5)
-    AND (strut_phase_rad IS :strut_phase_rad OR abs(strut_phase_rad - :strut_phase_rad) <= 2e-3)
-    AND (carriage_speed_m_s IS :carriage_speed_m_s
-         OR abs(carriage_speed_m_s - :carriage_speed_m_s) <= 1e-3)
-    AND (drift_rad IS :drift_rad OR abs(drift_rad - :drift_rad) <= 2e-4)
+WHERE channel = :channel AND ord = :order AND hull = :hull AND kind = :kind
+    AND settings IN (SELECT value FROM json_each(:alike))
 ORDER BY 1, campaigns.folder, runs.id
 """
 
@@ -144,9 +140,10 @@ def repeat_trends(
     order: int,
     probability: float,
 ) -> tuple[Trend, ...]:
-    """Return a harmonic of all runs of one run's hull, medium and set-point, earliest first.
+    """Return a harmonic of all runs of one run's hull, kind and settings, earliest first.
 
-    A run's first gate counts. In phase and quadrature are a trend each; a mean has the first only.
+    A run's first gate counts. In phase and quadrature are a trend each, in each unit; a mean has
+    the first only.
 
     Raises
     ------
@@ -156,7 +153,8 @@ def repeat_trends(
         If the run has no such harmonic.
     """
     set_to = the_run(connection, run, campaign)
-    rows = rows_of(connection, _REPEATS, {**set_to, "channel": channel, "order": order})
+    asked = {"channel": channel, "order": order, "alike": settings_alike(connection, set_to)}
+    rows = rows_of(connection, _REPEATS, {**set_to, **asked})
     if not any((row["folder"], row["run"]) == (set_to["folder"], run) for row in rows):
         channel_rows = rows_of(
             connection, "SELECT DISTINCT channel FROM harmonics WHERE run = ?", (set_to["id"],)
@@ -170,7 +168,8 @@ def repeat_trends(
             for row in rows
             if row[part] is not None
         ]
-        if part_rows:
-            name = f"{channel}, harmonic {order}, {part_name}" if order else f"{channel}, mean"
-            trends.append(_trend(name, part_rows, probability))
+        name = f"{channel}, harmonic {order}, {part_name}" if order else f"{channel}, mean"
+        for unit in dict.fromkeys(row["unit"] for row in part_rows):
+            same_unit = [row for row in part_rows if row["unit"] == unit]
+            trends.append(_trend(name, same_unit, probability))
     return tuple(trends)

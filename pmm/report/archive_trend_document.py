@@ -20,6 +20,7 @@ def trend_document(trends: tuple[Trend, ...], probability: float) -> Document:
     """Return a coefficient, or a harmonic of a repeated run, over time with its control chart."""
     name = trends[0].name.removesuffix(", in phase")
     several = len({trend.name for trend in trends}) > 1
+    units = {trend.unit for trend in trends}
     rows = [
         _TrendRow(trend, row, point)
         for trend in trends
@@ -41,13 +42,12 @@ def trend_document(trends: tuple[Trend, ...], probability: float) -> Document:
         Column("", lambda entry: entry.trend.name.rpartition(", ")[2] if several else "", "part"),
         Column("value" if several else name,
                lambda entry: rounded(entry.row["value"], entry.row["half_width"] or 0.0),
-               unit=trends[0].unit if len({trend.unit for trend in trends}) == 1 else "",
-               number=True),
+               unit=trends[0].unit if len(units) == 1 else "", number=True),
+        of_row(None if len(units) == 1 else "unit", "unit"),
         Column("limits", lambda entry: f"{entry.point.low:.4g} to {entry.point.high:.4g}"
                if entry.point.low == entry.point.low else NOT_KNOWN, number=True),
         Column("", lambda entry: "outside" if entry.point.outside else ""),
-        *(of_row(None, key) for key in ("folder", "unit", "value", "standard_uncertainty",
-                                        "half_width")),
+        *(of_row(None, key) for key in ("folder", "value", "standard_uncertainty", "half_width")),
         Column(None, lambda entry: entry.point.low, "low"),
         Column(None, lambda entry: entry.point.high, "high"),
         Column(None, lambda entry: entry.point.outside, "outside"),
