@@ -10,7 +10,7 @@ from analysis.comparison.linear import ComparisonProblem, Model, NothingInCommon
 
 _SURE: Final = 5.0  # standard deviations by which another lag must fit worse to be rejected
 _ALIKE: Final = 0.8  # correlation of a motion with itself, below which it does not repeat
-_TURNS: Final = 8
+_HALF_PERIODS: Final = (-2, 2, -1, 1)  # at which other lags are tried; half a period turns the sign
 
 
 def least_lag(
@@ -18,39 +18,49 @@ def least_lag(
 ) -> tuple[Model, float | None]:
     """Return the model that fits best, and the period by which its lag may be off, if any.
 
-    Lags a period earlier and later are tried on the same samples. Where one fits as well, the lag
-    nearest to zero with a positive gain is taken.
+    Lags a period earlier and later are tried on the same samples, and from the one that fits best
+    again: a fit that is a period off takes the start and the stop of the motion for noise, so that
+    by it alone none is better for sure. The best of all is what the others are judged by. Where one
+    fits as well, the lag nearest to zero with a positive gain is taken.
     """
     period_s = _period(problem, best, most_lag_s)
     if period_s is None:
         return best.model, None
-    for _ in range(_TURNS):
-        best = _fit_inside(problem, best, period_s)
-        limit = _limit(best)
-        neighbours = [
-            _fit_moved(problem, best, turns * period_s) for turns in (-1.0, 1.0, -0.5, 0.5)
-        ]
+    place, tried = 0, {0}
+    while True:
+        best = _fit_inside(problem, best.model, period_s)
+        neighbours = [_fit_moved(problem, best, half * period_s / 2.0) for half in _HALF_PERIODS]
         growth = [_growth(best, neighbour) for neighbour in neighbours]
-        if min(growth) < -limit:
-            nearest = neighbours[int(np.argmin(growth))]
-            if nearest is None:
-                break
-            best = nearest
-            continue
-        model = best.model
-        if min(growth[:2]) > limit:
-            return model, None
-        if model.gains[0] < 0.0 and min(growth[2:]) <= limit:
-            half = neighbours[2 + int(np.argmin(growth[2:]))]
-            model = model if half is None else half.model
-        lags = [
-            neighbour.model.alignment.lag_s for neighbour in neighbours[:2] if neighbour is not None
-        ]
-        period_s = (max(lags) - min(lags)) / 2.0 if len(lags) == 2 else period_s  # as it fits best
-        turns = round(model.alignment.lag_s / period_s)
-        where = replace(model.alignment, lag_s=model.alignment.lag_s - turns * period_s)
-        return replace(model, alignment=where), period_s
-    return best.model, None
+        k = int(np.argmin(growth))
+        nearest, place = neighbours[k], place + _HALF_PERIODS[k]
+        too_far = abs(place) * period_s / 2.0 > 2.0 * most_lag_s  # from one end to the other
+        if nearest is None or growth[k] >= 0.0 or place in tried or too_far:
+            return _judged(best, neighbours, growth, period_s)
+        best = nearest
+        tried.add(place)
+
+
+def _judged(
+    best: ComparisonFit,
+    neighbours: list[ComparisonFit | None],
+    growth: list[float],
+    period_s: float,
+) -> tuple[Model, float | None]:
+    """Return the model, and the period of the lags that fit no worse than by chance."""
+    limit = _limit(best)
+    model = best.model
+    if min(growth[:2]) > limit:
+        return model, None
+    if model.gains[0] < 0.0 and min(growth[2:]) <= limit:
+        half = neighbours[2 + int(np.argmin(growth[2:]))]
+        model = model if half is None else half.model
+    lags = [
+        neighbour.model.alignment.lag_s for neighbour in neighbours[:2] if neighbour is not None
+    ]
+    period_s = (max(lags) - min(lags)) / 2.0 if len(lags) == 2 else period_s  # as it fits best
+    turns = round(model.alignment.lag_s / period_s)
+    where = replace(model.alignment, lag_s=model.alignment.lag_s - turns * period_s)
+    return replace(model, alignment=where), period_s
 
 
 def _limit(best: ComparisonFit) -> float:
@@ -87,16 +97,14 @@ def _period(problem: ComparisonProblem, best: ComparisonFit, most_lag_s: float) 
     return float(below[0] + top) / fine / problem.second.rate_hz
 
 
-def _fit_inside(problem: ComparisonProblem, best: ComparisonFit, margin_s: float) -> ComparisonFit:
+def _fit_inside(problem: ComparisonProblem, model: Model, margin_s: float) -> ComparisonFit:
     """Fit again where the first channel is there a period before and after."""
-    margin = int(margin_s * problem.second.rate_hz) + 2
-    if 4 * margin > best.count:
-        margin = best.count // 4
-    where = replace(
-        best.model.alignment,
-        stretch=slice(best.start + margin, best.start + best.count - margin),
-    )
-    return fit(problem, replace(best.model, alignment=where))
+    where = model.alignment
+    covered = np.flatnonzero(problem.first.covers(where.times_s(problem.second.time_s)))
+    margin = min(int(margin_s * problem.second.rate_hz) + 2, len(covered) // 4)
+    start, stop = (int(covered[0]), int(covered[-1]) + 1) if len(covered) else (0, 0)
+    where = replace(where, stretch=slice(start + margin, stop - margin))
+    return fit(problem, replace(model, alignment=where))
 
 
 def _fit_moved(

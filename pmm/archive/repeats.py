@@ -1,4 +1,4 @@
-"""Which runs repeat another one: whole settings that agree within what drives and drawings state."""
+"""Which runs repeat another one: all settings agree within what drives and drawings state."""
 
 import json
 import sqlite3

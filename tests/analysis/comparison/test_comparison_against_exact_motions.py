@@ -10,6 +10,7 @@ from analysis.comparison.compare import compare
 from analysis.comparison.result import ChannelComparison
 from analysis.comparison.settings import ComparisonSettings
 from analysis.recording import Recording
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import Channel
 from hardware.description.errors import ConfigurationError, DataError
 from tests.analysis.comparison.motions import (
@@ -310,3 +311,24 @@ def test_a_dead_band_that_is_not_there_is_looked_for_in_few_steps(
     found = compared(irregular(np.random.default_rng(13)), truth(), 13)
     assert found.dead_band is not None
     assert 2 <= sum(half is not None for half in tried) <= 20  # of two fits: no better after ten
+
+
+@pytest.mark.parametrize("lag_s", [0.6, 1.0, 3.0, -1.4])
+@pytest.mark.parametrize("noise_m", [1e-5, 1e-3])
+def test_a_start_and_a_stop_tell_the_lag_itself(lag_s: float, noise_m: float) -> None:
+    """A sine with ramps at both ends, 12 s to 48 s: the lag put in, and no period beside it."""
+    rng = np.random.default_rng(5)
+    time_s = np.arange(0.0, 60.0, 0.01)
+
+    def motion_m(at_s: FloatArray) -> FloatArray:
+        share = np.clip((at_s - 12.0) / 2.0, 0.0, 1.0) * np.clip((48.0 - at_s) / 2.0, 0.0, 1.0)
+        return np.asarray(0.02 * share * np.sin(2.0 * np.pi * 0.8 * at_s))
+
+    first, second = (
+        recorded(name, values + noise_m * rng.standard_normal(time_s.size), 100.0, 0.0, "m")
+        for name, values in (("a", motion_m(time_s)), ("b", 1.05 * motion_m(time_s - lag_s)))
+    )
+    found = compare(first, "x", second, "x")
+    assert found.modulo_s is None
+    assert abs(found.lag_s.value - lag_s) < 2.0 * found.lag_s.half_width() < 4e-3
+    assert abs(found.gain.value - 1.05) < 2.0 * found.gain.half_width()

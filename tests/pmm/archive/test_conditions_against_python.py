@@ -41,7 +41,8 @@ def archive(tmp_path_factory: pytest.TempPathFactory) -> Path:
         for row in ROWS:
             connection.execute(
                 "INSERT INTO runs (campaign, run, kind, outcome, repeat, frequency_hz, medium, "
-                "drift_rad, settings) VALUES (?, ?, 'oscillation', 'complete', ?, ?, 'water', ?, '{}')",
+                "drift_rad, settings) "
+                "VALUES (?, ?, 'oscillation', 'complete', ?, ?, 'water', ?, '{}')",
                 (HULLS.index(row["hull"]), row["run"], row["repeat"], row["frequency_hz"],
                  row["drift_rad"]),
             )  # fmt: skip
