@@ -104,7 +104,10 @@ def evaluate(folder: Path, valid_days: int) -> Evaluation:
         zero_drifts(of_kind(results, "zero")),
         tried(lambda: _calibration(weights, valid_days), None),
         tuple(modes),
-        _responses(folder, of_kind(results, "known-mass"), of_kind(results, "dry")),
+        tried(
+            lambda: _responses(folder, of_kind(results, "known-mass"), of_kind(results, "dry")),
+            (),
+        ),
         control_charts(controls) if len(controls) >= LEAST else (),
         water,
         tried(lambda: towed_speeds(results), ()),

@@ -2,6 +2,7 @@
 
 import cmath
 import math
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final
@@ -10,8 +11,13 @@ import numpy as np
 
 from analysis.inertia.damped_fit import fit_damped
 from analysis.inertia.spectrum import spectrum
+from analysis.resolver.harmonics import Harmonics
+from analysis.uncertainty.freedom import effective_freedom, student_factor
+from hardware.description.arrays import FloatArray
 from hardware.description.channels import CARRIAGE_SPEED
 from hardware.description.errors import DataError
+from hardware.description.setpoint import ANGLE_KEYS
+from pmm.document.notation import degrees
 from pmm.evaluation.run_results import RunResult
 
 _LOWEST_CYCLES: Final = 5.0  # of a mode in the record: below, it is drift
@@ -20,9 +26,18 @@ _RING_TIMES: Final = 10.0  # over the median of the spectrum: what stands out so
 
 @dataclass(frozen=True)
 class GaugeZeros:
-    """A gauge's zero over the campaign, and its largest change from one to the next."""
+    """A gauge's zero over the campaign in one state, and its largest change from one to the next.
+
+    Attributes
+    ----------
+    state
+        Medium, drift (or trim), heel and known mass, in words: each of them moves the zero itself.
+    largest_change_n
+        NaN of one zero run alone.
+    """
 
     channel: str
+    state: str
     first_n: float
     last_n: float
     largest_change_n: float
@@ -57,13 +72,17 @@ class GaugeResponse:
         Reading over force; its sign is that of the gauge.
     lag_s
         By which the reading is late.
+    gain_half_width, lag_half_width_s
+        Of 95 % intervals, from the scatter of both runs' readings.
     """
 
     run: str
     channel: str
     frequency_hz: float
     gain: float
+    gain_half_width: float
     lag_s: float
+    lag_half_width_s: float
 
 
 @dataclass(frozen=True)
@@ -108,16 +127,28 @@ def towed_speeds(runs: Sequence[RunResult]) -> tuple[TowedSpeed, ...]:
 
 
 def zero_drifts(runs: Sequence[RunResult]) -> tuple[GaugeZeros, ...]:
-    """Return how the zero of each gauge moved over the zero runs."""
-    if not runs:
-        return ()
-    means = [run.means() for run in runs]
+    """Return how the zero of each gauge moved over the zero runs of each state."""
+    means: dict[str, list[dict[str, float]]] = defaultdict(list)
+    for run in runs:
+        means[_state(run)].append(run.means())
     drifts = []
-    for name in runs[0].forces:
-        values = np.array([mean[name] for mean in means])
-        largest = float(np.abs(np.diff(values)).max()) if values.size > 1 else 0.0
-        drifts.append(GaugeZeros(name, float(values[0]), float(values[-1]), largest))
+    for name in runs[0].forces if runs else ():
+        for state, of_state in means.items():
+            values = np.array([mean[name] for mean in of_state])
+            largest = float(np.abs(np.diff(values)).max()) if values.size > 1 else math.nan
+            drifts.append(GaugeZeros(name, state, float(values[0]), float(values[-1]), largest))
     return tuple(drifts)
+
+
+def _state(run: RunResult) -> str:
+    point, mass = run.plan["set_point"], run.plan.get("known_mass")
+    words = [str(point["medium"])]
+    words += [
+        f"{axis} {degrees(point[key])} deg" for axis, key in ANGLE_KEYS.items() if point.get(key)
+    ]
+    if mass:
+        words.append(f"{mass['mass_kg']:g} kg at {mass.get('x_m', 0.0):g} m")
+    return ", ".join(words)
 
 
 def rung_modes(runs: Sequence[RunResult]) -> tuple[RungMode, ...]:
@@ -137,7 +168,13 @@ def known_mass_responses(
     """Return each gauge's gain and lag from what a known mass adds to a dry run.
 
     The difference of two runs in air at one set-point is the inertia force of the mass alone, so
-    that nothing has to be known of the model.
+    that nothing has to be known of the model. A gauge whose part of that force is within the
+    uncertainty of its readings tells nothing and has no response.
+
+    Raises
+    ------
+    DataError
+        If a recording is damaged or tells no harmonics.
     """
     responses: list[GaugeResponse] = []
     for run in mass_runs:
@@ -168,15 +205,48 @@ def _responses(run: RunResult, base: RunResult, half_m: float) -> list[GaugeResp
         "force_aft": force / 2.0 - moment / (2.0 * half_m),
         "force_fore": force / 2.0 + moment / (2.0 * half_m),
     }
+    readings = (run.resolved(), base.resolved())
     responses = []
     for channel, value in forces.items():
-        if channel not in run.first or not abs(value) > 0.0:
+        if any(channel not in reading.channel_names for reading in readings):
             continue
-        ratio = (run.first[channel] - base.first[channel]) / value
+        added, uncertainty = _added(*readings, channel)
+        phase = cmath.phase(added)
+        along = float(np.linalg.norm([math.cos(phase), math.sin(phase)] @ uncertainty))
+        across = float(np.linalg.norm([-math.sin(phase), math.cos(phase)] @ uncertainty))
+        if not abs(value) > along:  # nor where no interval is known
+            continue
+        ratio = added / value
         sign = -1.0 if ratio.real < 0.0 else 1.0
-        lag_s = -cmath.phase(sign * ratio) / omega
-        responses.append(GaugeResponse(run.name, channel, frequency_hz, sign * abs(ratio), lag_s))
+        responses.append(
+            GaugeResponse(
+                run.name,
+                channel,
+                frequency_hz,
+                sign * abs(ratio),
+                along / abs(value),
+                -cmath.phase(sign * ratio) / omega,
+                across / abs(added) / omega,
+            )
+        )
     return responses
+
+
+def _added(run: Harmonics, base: Harmonics, channel: str) -> tuple[complex, FloatArray]:
+    """Return what a run's first harmonic has more than another's, and its uncertainty.
+
+    The latter is ``H``, shape ``(2, deviates)``: ``|n H|`` is the half-width of the 95 % interval
+    in the direction ``n`` of (in phase, quadrature); NaN where a run has too few periods.
+    """
+    values, deviations, freedoms = [], [], []
+    for reading in (run, base):
+        row = reading.channel_names.index(channel)
+        values.append(complex(reading.in_phase[row, 0], reading.quadrature[row, 0]))
+        deviations.append(reading.deviations[row, 1:3])
+        freedoms.append(float(reading.degrees_of_freedom[1]))
+    variances = np.array([[np.sum(deviation**2)] for deviation in deviations])
+    factor = student_factor(effective_freedom(variances, np.array(freedoms)))[0]
+    return values[0] - values[1], factor * np.hstack(deviations)
 
 
 def _own_inertia(mass: dict[str, Any]) -> float:

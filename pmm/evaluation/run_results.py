@@ -11,6 +11,8 @@ import numpy as np
 from analysis.readers import read_recording
 from analysis.readers.damage import check_whole
 from analysis.recording import Recording
+from analysis.resolver.analysis import analyse
+from analysis.resolver.harmonics import Harmonics
 from hardware.description.errors import DataError
 from pmm.recorder.files import EVENTS, HARMONICS, HEADER, RECORDING
 from pmm.recorder.header import RunHeader
@@ -75,6 +77,16 @@ class RunResult:
             raise DataError(f"{self.folder}: the gate was not open; make the run again")
         edges = np.ceil(recording.sample_number(np.array([opened, closed]))).astype(int)
         return recording, slice(max(int(edges[0]), 0), min(int(edges[1]), recording.sample_count))
+
+    def resolved(self) -> Harmonics:
+        """Return the harmonics of the recorded gate with their uncertainties.
+
+        Raises
+        ------
+        DataError
+            If the samples are not those that were recorded, or tell no harmonics.
+        """
+        return analyse(self.recording()).readings[0]
 
     def means(self) -> dict[str, float]:
         """Return the mean of each force channel over the gate."""

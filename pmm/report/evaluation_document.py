@@ -34,6 +34,7 @@ from pmm.report.slow_tests import chart_figure, drift_figure, resistance_figure,
 SCHEMA: Final = "pmm-evaluation-1"
 _ZEROS: Final[tuple[Column[GaugeZeros], ...]] = (
     word("gauge", "channel"),
+    word("state", "state"),
     number("first", "first_n", written(".4g"), "N"),
     number("last", "last_n", written(".4g"), "N"),
     number("largest change", "largest_change_n", written(".2g"), "N"),
@@ -50,8 +51,14 @@ _KNOWN_MASS: Final[tuple[Column[GaugeResponse], ...]] = (
     word("run", "run"),
     word("gauge", "channel"),
     number("f", "frequency_hz", written("g"), "Hz"),
-    number("gain", "gain", written(".5f")),
-    number("lag", "lag_s", lambda lag_s: f"{1e3 * lag_s:.3f}", "ms"),
+    Column("gain", lambda found: rounded(found.gain, found.gain_half_width), number=True),
+    Column(
+        "lag",
+        lambda found: rounded(1e3 * found.lag_s, 1e3 * found.lag_half_width_s),
+        unit="ms",
+        number=True,
+    ),
+    *data_only("gain", "gain_half_width", "lag_s", "lag_half_width_s"),
 )
 
 _SPEEDS: Final[tuple[Column[TowedSpeed], ...]] = (
@@ -92,7 +99,7 @@ def evaluation_document(evaluation: Evaluation) -> Document:
         Table("Zeros", _ZEROS, evaluation.zeros, "zeros", titled=True),
         *_calibration(evaluation.calibration),
         Table("Modes", _MODES, evaluation.modes, "modes", titled=True),
-        Table("Known mass", _KNOWN_MASS, evaluation.responses, "known_mass", titled=True),
+        Table("Known mass, 95 %", _KNOWN_MASS, evaluation.responses, "known_mass", titled=True),
         Table(
             "Carriage, by its own measurement over the gate",
             _SPEEDS,
