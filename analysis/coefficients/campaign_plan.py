@@ -1,12 +1,12 @@
 """Which runs of a campaign are solved together, and what is refused before anything is solved."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from statistics import median_low
 from typing import Final
 
+from analysis.coefficients.alike import classes
 from analysis.coefficients.body_cycle import DRY_TAKEN_OFF, BodyCycle
 from analysis.coefficients.cycle_checks import named_twice, other_geometry
 from analysis.coefficients.identifiability import fundamental_velocities, identifiable_motions
@@ -19,6 +19,7 @@ from hardware.description.setpoint import Medium
 
 _SAME_FREQUENCY = 5e-3
 _SAME_SPEED = 1e-2
+_SLOWEST_M_S = 0.01  # below, speeds are the same by what they would be at this one
 _SAME_AMPLITUDE = 2e-2
 OWN_MODEL: Final = "own_model"  # flag of a run that was made with another model than the rest
 
@@ -155,14 +156,16 @@ def plan(
     """
     groups = []
     every = [*cycles, *(run for run in line_runs if request.nonlinear)]
-    for alike, speed in _classes(every, lambda run: run.speed_m_s, _SAME_SPEED, 0.01):
+    for alike, speed in classes(
+        every, lambda run: run.speed_m_s, _SAME_SPEED, _SLOWEST_M_S * _SAME_SPEED
+    ):
         lined = [run for run in alike if run.lines]
         single = [run for run in alike if not run.lines]
         static = [cycle for cycle in single if cycle.frequency_hz == 0.0]
         if static:
             groups.append(Group(GroupKind.STATIC, tuple(static), speed, 0.0))
         moving = [cycle for cycle in single if cycle.frequency_hz > 0.0]
-        for together, hz in _classes(moving, lambda run: run.frequency_hz, _SAME_FREQUENCY):
+        for together, hz in classes(moving, lambda run: run.frequency_hz, _SAME_FREQUENCY):
             groups += [
                 Group(kind, runs, speed, hz) for kind, runs in _by_amplitude(together, request)
             ]
@@ -179,9 +182,11 @@ def _by_amplitude(
     cycles: Sequence[BodyCycle], request: Request
 ) -> list[tuple[GroupKind, tuple[BodyCycle, ...]]]:
     straight = [cycle for cycle in cycles if cycle.drift_rad == 0.0 and not set_heel_of(cycle)]
-    classes = [group for group, _ in _classes(straight, strut_amplitude, _SAME_AMPLITUDE)]
-    columns = [_determined_motions(group, request.form) for group in classes]
-    amplitude_groups = [group for group, motions in zip(classes, columns, strict=True) if motions]
+    amplitudes = [group for group, _ in classes(straight, strut_amplitude, _SAME_AMPLITUDE)]
+    columns = [_determined_motions(group, request.form) for group in amplitudes]
+    amplitude_groups = [
+        group for group, motions in zip(amplitudes, columns, strict=True) if motions
+    ]
     if (
         straight
         and {0, 1} != {column for motions in columns for column in motions}
@@ -189,7 +194,7 @@ def _by_amplitude(
     ):
         amplitude_groups.append(tuple(straight))
     groups = [(GroupKind.LINEAR, group) for group in amplitude_groups]
-    mixed = len(classes) > 1 or len(straight) < len(cycles)
+    mixed = len(amplitudes) > 1 or len(straight) < len(cycles)
     if request.nonlinear and mixed:
         groups.append((GroupKind.NONLINEAR, tuple(cycles)))
     return groups
@@ -210,24 +215,3 @@ def strut_amplitude(cycle: BodyCycle) -> float:
     """Return the larger amplitude of both struts, m."""
     way, arm = cycle.at_struts
     return float(max(abs(way + arm), abs(way - arm)))
-
-
-def _classes(
-    cycles: Sequence[BodyCycle],
-    value_of: Callable[[BodyCycle], float],
-    relative: float,
-    least: float = 0.0,
-) -> list[tuple[tuple[BodyCycle, ...], float]]:
-    """Return the runs whose values are alike, each run once, with the median value; rising."""
-    values = [value_of(cycle) for cycle in cycles]
-    groups: list[list[int]] = []
-    for at in sorted(range(len(cycles)), key=values.__getitem__):
-        lowest = values[groups[-1][0]] if groups else math.nan
-        if abs(values[at] - lowest) <= relative * max(abs(lowest), least):
-            groups[-1].append(at)
-        else:
-            groups.append([at])
-    return [
-        (tuple(cycles[at] for at in sorted(group)), median_low(values[at] for at in group))
-        for group in groups
-    ]

@@ -3,17 +3,20 @@
 import math
 import sqlite3
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
+from analysis.coefficients.alike import classes
 from hardware.description.errors import DataError
 from pmm.archive.queries import Row, rows_of, the_run, what_is_there
 from pmm.archive.repeats import settings_alike
 
 FEWEST = 3  # campaigns: two others tell a scatter
+_SAME_SPEED_M_S: Final = 1e-3
+_SAME_FREQUENCY_HZ: Final = 1e-4
 _PARTS: Final = {"in_phase": "in phase", "quadrature": "quadrature"}
 # CROSS: the runs come first.
 _REPEATS: Final = """
@@ -88,7 +91,7 @@ class Trend:
     chart: tuple[ChartPoint, ...]
 
 
-def _trend(name: str, rows: list[Row], probability: float) -> Trend:
+def _trend(name: str, rows: Sequence[Row], probability: float) -> Trend:
     first = rows[0]
     return Trend(
         name,
@@ -106,7 +109,7 @@ def coefficient_trends(
 ) -> tuple[Trend, ...]:
     """Return a coefficient's values, earliest first, a trend for what can be compared.
 
-    Speeds are the same within 1 mm/s, frequencies within 0.1 mHz.
+    Speeds are the same within 1 mm/s of the lowest, frequencies within 0.1 mHz.
 
     Raises
     ------
@@ -116,8 +119,7 @@ def coefficient_trends(
     rows = rows_of(
         connection,
         "SELECT campaigns.recorded_utc, campaigns.campaign, campaigns.folder, campaigns.hull, "
-        "coefficients.unit, round(speed_m_s, 3) AS speed_m_s, "
-        "round(frequency_hz, 4) AS frequency_hz, value, standard_uncertainty, half_width "
+        "coefficients.unit, speed_m_s, frequency_hz, value, standard_uncertainty, half_width "
         "FROM coefficients JOIN campaigns ON campaigns.id = coefficients.campaign "
         "WHERE name = ? AND value IS NOT NULL ORDER BY campaigns.recorded_utc, campaigns.folder",
         (name,),
@@ -126,10 +128,21 @@ def coefficient_trends(
         name_rows = rows_of(connection, "SELECT DISTINCT name FROM coefficients")
         hint = what_is_there("coefficients", name, [row["name"] for row in name_rows])
         raise DataError(f"no coefficient {name!r}; {hint}")
-    groups: dict[tuple[object, ...], list[Row]] = defaultdict(list)
+    groups: dict[tuple[str, str, bool, bool], list[Row]] = defaultdict(list)
     for row in rows:
-        groups[row["hull"], row["unit"], row["speed_m_s"], row["frequency_hz"]].append(row)
-    return tuple(_trend(name, group, probability) for _, group in sorted(groups.items()))
+        known = (row["speed_m_s"] is not None, row["frequency_hz"] is not None)
+        groups[row["hull"], row["unit"], *known].append(row)
+    return tuple(
+        _trend(name, alike, probability)
+        for _, group in sorted(groups.items())
+        for at_speed, _ in classes(group, _value_of("speed_m_s"), 0.0, _SAME_SPEED_M_S)
+        for alike, _ in classes(at_speed, _value_of("frequency_hz"), 0.0, _SAME_FREQUENCY_HZ)
+    )
+
+
+def _value_of(key: str) -> Callable[[Row], float]:
+    """Return a row's value; one that is not known is 0, and stands with its like alone."""
+    return lambda row: float(row[key] or 0.0)
 
 
 def repeat_trends(

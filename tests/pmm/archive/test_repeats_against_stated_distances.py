@@ -6,8 +6,8 @@ import pytest
 
 from hardware.description.errors import ConfigurationError
 from pmm.archive.database import open_archive
-from pmm.archive.results import AnalysedCampaign, Analyses, HarmonicValue
-from pmm.archive.trends import repeat_trends
+from pmm.archive.results import AnalysedCampaign, Analyses, CoefficientValue, HarmonicValue
+from pmm.archive.trends import coefficient_trends, repeat_trends
 from tests.pmm.archive.one_folder import add_folder
 
 NOW = "2026-01-01T00:00:00+00:00"
@@ -89,3 +89,17 @@ def test_an_archive_without_whole_settings_is_refused_with_what_to_do(tmp_path: 
         connection.execute("PRAGMA user_version = 2")
     with pytest.raises(ConfigurationError, match="add the folders to it"), open_archive(path):
         pass
+
+
+def test_coefficients_of_one_speed_are_one_trend_wherever_rounding_cuts(tmp_path: Path) -> None:
+    """1.2004 and 1.2006 m/s lie on both sides of a rounded mm/s, 0.50004 and 0.50006 Hz too."""
+    conditions = [(1.2004, 0.50004), (1.2006, 0.50006), (1.2030, 0.50004), (1.2006, 0.50100)]
+    with open_archive(tmp_path / "a.sqlite", create=True) as connection:
+        for k, (speed_m_s, frequency_hz) in enumerate(conditions):
+            value = CoefficientValue("Y_v", "N s/m", speed_m_s, frequency_hz, 1.0, 0.1, 0.2)
+            found = AnalysedCampaign((), (value,))
+            folder = _campaign(tmp_path / f"c{k}")
+            add_folder(connection, folder, Analyses(lambda _, found=found: found), NOW)
+        trends = coefficient_trends(connection, "Y_v", 0.99)
+    charted = [[row["campaign"] for row in trend.rows] for trend in trends]
+    assert charted == [["c0", "c1"], ["c3"], ["c2"]]

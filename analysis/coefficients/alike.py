@@ -1,0 +1,35 @@
+"""Values that count as one: what is set or measured again is never the same to the last digit."""
+
+import math
+from collections.abc import Callable, Sequence
+from statistics import median_low
+from typing import TypeVar
+
+_Item = TypeVar("_Item")
+
+
+def classes(
+    items: Sequence[_Item],
+    value_of: Callable[[_Item], float],
+    relative: float,
+    absolute: float = 0.0,
+) -> list[tuple[tuple[_Item, ...], float]]:
+    """Return the items whose values are alike, each once, with the median value; rising.
+
+    Parameters
+    ----------
+    relative, absolute
+        How far a value may lie from the lowest of its class; the larger of both counts.
+    """
+    values = [value_of(item) for item in items]
+    groups: list[list[int]] = []
+    for at in sorted(range(len(items)), key=values.__getitem__):
+        lowest = values[groups[-1][0]] if groups else math.nan
+        if abs(values[at] - lowest) <= max(relative * abs(lowest), absolute):
+            groups[-1].append(at)
+        else:
+            groups.append([at])
+    return [
+        (tuple(items[at] for at in sorted(group)), median_low(values[at] for at in group))
+        for group in groups
+    ]
