@@ -29,3 +29,7 @@ class Check:
     reason: str
     moved: str
     numbers: tuple[float, ...] = ()
+
+
+Peak = tuple[Check, float, float, float, str]
+"""What is looked at, its value, between which limits, and whose they are, with the place."""

@@ -64,13 +64,14 @@ ACCELERATION: Final = _rig_limit(
 STRUT_FORCE: Final = _rig_limit(
     "strut force, estimate [N]",
     "refuse above `oscillator.force_per_strut_n`",
-    "lower the frequency or the amplitude",
+    "lower the frequency or the amplitude, or tow slower or at less drift",
 )
 GAUGE_FORCE: Final = Check(
     "gauge force, estimate [N]",
-    "refuse above the gauges' full scale; warn above {0:.0%} of it",
+    "of each strut: refuse above its gauge's full scale; warn above {0:.0%} of it",
     f"{_RIG}; the share is {_OURS}",
-    "lower the frequency or the amplitude: the estimate may be short of the truth",
+    "lower the frequency or the amplitude, or tow slower or at less drift: the estimate may be "
+    "short of the truth",
     "half: warned of from 40 % on; twice: never warned of",
     (0.8,),
 )

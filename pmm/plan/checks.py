@@ -107,8 +107,9 @@ def _not_checked(plan: Plan, rig: RigFile) -> Iterator[PlanFinding]:
     turning = any(run.oscillates for run in plan.runs)
     paths = any(run.set_point.lines for run in plan.runs)
     for absent, table, subject in (
-        (turning and model is None, "[model]", "forces are"),
+        ((turning or towed) and model is None, "[model]", "forces are"),
         (model is not None and rig.hull is None, "[hull]", "the water's part of the force is"),
+        (towed and model is not None and rig.hull is None, "[hull]", "the force of tows is"),
         (
             towed and (model is None or model.length_m is None),
             "model.length_m",

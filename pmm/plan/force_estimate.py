@@ -1,7 +1,8 @@
 """A simple estimate of the struts' forces, and how far it is to be trusted.
 
 Mass, added mass, damping, weight and restoring as the rig's file gives them, constant over
-frequency; velocities are those through the water, so that a pure yaw has no sway force.
+frequency; velocities are those through the water, so that a pure yaw has no sway force. What is
+steady is that of the mean incidence and of a circle: the same matrices, whose loads do not change.
 """
 
 import math
@@ -73,8 +74,11 @@ def force_estimate(run: RunPlan, rig: RigFile) -> ForceEstimate | None:
     e, phi = point.eccentricity_m, point.strut_phase_rad
     aft, fore = complex(e), e * complex(math.cos(phi), math.sin(phi))
     motion = np.array(to_motion(aft, fore, oscillator.half_spacing_m, oscillator.plane))
+    iw = 1j * omega_of(run)
+    through = iw * motion + point.carriage_speed_m_s * incidence(oscillator.plane) @ motion
+    moves = _Moves(motion, through, iw**2 * motion, iw * through)
     forces, parts = np.zeros(2, dtype=np.complex128), []
-    for matrix, moved, relative in _reactions(run, rig, rig.model, motion):
+    for matrix, moved, relative in _reactions(run, rig, rig.model, moves):
         for row, column in np.ndindex(2, 2):
             load = np.zeros(2, dtype=np.complex128)
             load[row] = matrix[row][column] * moved[column]
@@ -84,16 +88,58 @@ def force_estimate(run: RunPlan, rig: RigFile) -> ForceEstimate | None:
     return ForceEstimate(forces, np.array(parts))
 
 
+def steady_forces_n(run: RunPlan, rig: RigFile) -> FloatArray:
+    """Return what towing asks of the struts, aft and fore, in newtons, shape ``(2,)``.
+
+    Damping by the mean incidence and the rate of turn, and inertia on a circle; zeros where the
+    rig's file describes no model. Resistance and rudder are not in it.
+    """
+    if rig.model is None:
+        return np.zeros(2)
+    point, plane = run.set_point, rig.oscillator.plane
+    heading = np.array([0.0, math.sin(point.drift_rad)])
+    turning = np.array([0.0, point.turn_rate_rad_s])
+    along_m_s = point.carriage_speed_m_s * math.cos(point.drift_rad)
+    moves = _Moves(
+        place=np.zeros(2),
+        through=turning + point.carriage_speed_m_s * incidence(plane) @ heading,
+        acceleration=np.array([along_m_s * point.turn_rate_rad_s, 0.0]),
+        gain_through=np.zeros(2),
+    )
+    loads = [matrix @ moved for matrix, moved, _ in _reactions(run, rig, rig.model, moves)]
+    return _at_struts(np.sum(loads, axis=0), rig.oscillator).real
+
+
+def force_peaks_n(run: RunPlan, rig: RigFile) -> FloatArray | None:
+    """Return an estimate of the largest force of each strut, aft and fore, in newtons.
+
+    It is the size of what is steady with the first harmonics, and ``None`` where nothing moves or
+    the rig's file describes no model.
+    """
+    if rig.model is None or not (run.oscillates or run.set_point.carriage_speed_m_s):
+        return None
+    return np.abs(steady_forces_n(run, rig)) + oscillating_forces_n(run, rig)
+
+
+def oscillating_forces_n(run: RunPlan, rig: RigFile) -> FloatArray:
+    """Return what a motion asks of each strut at most beside what is steady, in newtons.
+
+    Shape ``(2,)``, aft and fore; zeros of a shaft at rest, and where the rig's file describes no
+    model.
+    """
+    sines = single_sines(run) if run.oscillates else ()
+    estimates = [force_estimate(sine, rig) for sine in sines]
+    sizes = [np.abs(estimate.forces) for estimate in estimates if estimate is not None]
+    return np.sum([np.zeros(2), *sizes], axis=0) * rod_factor(run, rig.oscillator)
+
+
 def force_peak_n(run: RunPlan, rig: RigFile) -> float | None:
     """Return an estimate of the largest force of a strut, in newtons.
 
-    It is ``None`` where the rig's file describes no model.
+    It is ``None`` as :func:`force_peaks_n` is.
     """
-    estimates = [force_estimate(sine, rig) for sine in single_sines(run)]
-    sizes = [np.abs(estimate.forces) for estimate in estimates if estimate is not None]
-    if not sizes:
-        return None
-    return float(np.sum(sizes, axis=0).max()) * rod_factor(run, rig.oscillator)
+    peaks = force_peaks_n(run, rig)
+    return None if peaks is None else float(peaks.max())
 
 
 def single_sines(run: RunPlan) -> tuple[RunPlan, ...]:
@@ -151,26 +197,37 @@ def _gauges(rig: RigFile) -> FloatArray:
     return matrix
 
 
-def _at_struts(load: ComplexArray, oscillator: Oscillator) -> ComplexArray:
+def _at_struts(load: ComplexArray | FloatArray, oscillator: Oscillator) -> ComplexArray:
     force, moment = complex(load[0]), complex(load[1])
     return np.array(to_strut_forces(force, moment, oscillator.half_spacing_m, oscillator.plane))
 
 
+class _Moves(NamedTuple):
+    """Translation and rotation in m and rad, and their rates: phasors, or what is steady.
+
+    ``through`` and ``gain_through`` are velocity and acceleration through the water, along the
+    model's axes.
+    """
+
+    place: ComplexArray | FloatArray
+    through: ComplexArray | FloatArray
+    acceleration: ComplexArray | FloatArray
+    gain_through: ComplexArray | FloatArray
+
+
 def _reactions(
-    run: RunPlan, rig: RigFile, model: ShipModel, motion: ComplexArray
-) -> Iterator[tuple[FloatArray, ComplexArray, float]]:
-    """Yield matrices, the phasors that they act on, and their relative standard uncertainties."""
-    plane, iw = rig.oscillator.plane, 1j * omega_of(run)
-    medium = run.set_point.medium
-    yield mass_matrix(_laden(model, run), plane), iw**2 * motion, MODEL_UNCERTAINTY
-    yield weight_matrix(model, plane, medium), motion, MODEL_UNCERTAINTY
+    run: RunPlan, rig: RigFile, model: ShipModel, moves: _Moves
+) -> Iterator[tuple[FloatArray, ComplexArray | FloatArray, float]]:
+    """Yield matrices, the moves that they act on, and their relative standard uncertainties."""
+    plane, medium = rig.oscillator.plane, run.set_point.medium
+    yield mass_matrix(_laden(model, run), plane), moves.acceleration, MODEL_UNCERTAINTY
+    yield weight_matrix(model, plane, medium), moves.place, MODEL_UNCERTAINTY
     if medium is Medium.AIR:
         return
     hull = rig.hull or HullEstimate()
-    through = iw * motion + run.set_point.carriage_speed_m_s * incidence(plane) @ motion
-    yield np.array(hull.added_mass), iw * through, ADDED_MASS_UNCERTAINTY
-    yield np.array(hull.damping), through, DAMPING_UNCERTAINTY
-    yield np.array(hull.restoring), motion, RESTORING_UNCERTAINTY
+    yield np.array(hull.added_mass), moves.gain_through, ADDED_MASS_UNCERTAINTY
+    yield np.array(hull.damping), moves.through, DAMPING_UNCERTAINTY
+    yield np.array(hull.restoring), moves.place, RESTORING_UNCERTAINTY
 
 
 def _laden(model: Body, run: RunPlan) -> Body:

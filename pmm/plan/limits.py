@@ -14,18 +14,16 @@ from hardware.path_shaft_settings import STRUTS, PathShaftSettings
 from hardware.rig_configuration import RigPart, load_of
 from hardware.roles import PathFollower, SpeedFollower
 from pmm.plan import check_table as table
-from pmm.plan.check import Check
+from pmm.plan.check import Check, Peak
 from pmm.plan.duration import carriage_track_m, tank_length_m
 from pmm.plan.findings import PlanFinding, PlanVerdict
-from pmm.plan.force_estimate import force_peak_n
+from pmm.plan.force_checks import force_peaks, near_full_scale
 from pmm.plan.motion_peaks import acceleration_peak_m_s2, omega_of, peak_place, velocity_peak_m_s
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 
 _INSTANTS = 720  # of a turn
 _ROUNDING = 1.0 + 1e-6
-Peak = tuple[Check, float, float, float, str]
-"""What is looked at, its value, between which limits, and whose they are, with the place."""
 
 
 class _Bound(NamedTuple):
@@ -57,7 +55,7 @@ def limit_findings(run: RunPlan, rig: RigFile) -> Iterator[PlanFinding]:
             )
             yield PlanFinding(PlanVerdict.REFUSE, quantity, bound.value, limit, run.name, text)
     yield from not_led(run, rig)
-    yield from _near_full_scale(run, rig)
+    yield from near_full_scale(run, rig)
     yield from _many_turns(run)
 
 
@@ -84,9 +82,8 @@ def _turning(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:
             limits.acceleration_m_s2,
             peak_place(run, 2, "of a strut"),
         ),
-        (table.STRUT_FORCE, force_peak_n(run, rig), oscillator.force_per_strut_n, "of a strut"),
     ):
-        if value is not None and limit is not None:
+        if limit is not None:
             yield _Bound(check, value, 0.0, limit, where)
 
 
@@ -163,29 +160,12 @@ def _many_turns(run: RunPlan) -> Iterator[PlanFinding]:
 
 
 def _loading(run: RunPlan, rig: RigFile) -> Iterator[_Bound]:
-    """Yield the loads of check weights and pushes, and the largest force of an oscillation."""
+    """Yield the loads of check weights and pushes, and what motion and towing ask."""
     for gauge in rig.gauges:
         if run.load is not None and run.load.channel == gauge.channel:
             load, most = abs(run.load.force_n), gauge.full_scale_n
             yield _Bound(table.LOAD, load, 0.0, most, "its full scale", gauge.channel)
-    force = force_peak_n(run, rig) if run.oscillates else None
-    if force is not None and rig.gauges:
-        least = min(gauge.full_scale_n for gauge in rig.gauges)
-        yield _Bound(table.GAUGE_FORCE, force, 0.0, least, "full scale of the gauges")
-
-
-def _near_full_scale(run: RunPlan, rig: RigFile) -> Iterator[PlanFinding]:
-    force = force_peak_n(run, rig) if run.oscillates else None
-    if force is None or not rig.gauges:
-        return
-    least, (share,) = min(gauge.full_scale_n for gauge in rig.gauges), table.GAUGE_FORCE.numbers
-    if share * least < force <= least:
-        text = (
-            f"an estimated force of {force:.4g} N is above {share:.0%} of the gauges' "
-            f"{least:g} N: {table.GAUGE_FORCE.reason}"
-        )
-        quantity = table.GAUGE_FORCE.quantity
-        yield PlanFinding(PlanVerdict.WARN, quantity, force, share * least, run.name, text)
+    yield from (_Bound(*peak) for peak in force_peaks(run, rig))
 
 
 def bus_finding(rig: RigFile) -> Iterator[PlanFinding]:

@@ -142,7 +142,8 @@ _RUNS: Final[tuple[Column[_Row], ...]] = (
     Column("U", lambda row: row.run.set_point.carriage_speed_m_s, unit="m/s", number=True,
            written=lambda speed: f"{speed:g}" if speed else ""),
     _turning("periods", "", lambda row: _periods(row.run)),
-    _turning("force, est.", "N", lambda row: "" if row.force_n is None else f"{row.force_n:.1f}"),
+    Column("force, est.", "force_n", unit="N", number=True,
+           written=lambda force_n: "" if force_n is None else f"{force_n:.1f}"),
     number("way", "tank_length_m", lambda way: f"{way:.1f}" if way else "", "m"),
     number("time", "duration_s", clock),
     number("ends at", "ends_at_s", clock),
@@ -153,7 +154,7 @@ def show_document(plan: Plan, rig: RigFile) -> Document:
     """Return the runs of a plan in their order, with how long they take and what they ask."""
     times = duration_rows(plan.runs, rig)
     rows = [
-        _Row(number, run, time_s, end_s, tank_length_m(run, rig), _force(run, rig))
+        _Row(number, run, time_s, end_s, tank_length_m(run, rig), force_peak_n(run, rig))
         for number, (run, time_s, end_s) in enumerate(
             zip(plan.runs, times, accumulate(times), strict=True), 1
         )
@@ -176,14 +177,10 @@ def show_document(plan: Plan, rig: RigFile) -> Document:
     return Document("", "runs of a plan", (Section("", contents),), SHOW_SCHEMA)
 
 
-def _force(run: RunPlan, rig: RigFile) -> float | None:
-    return force_peak_n(run, rig) if run.oscillates else None
-
-
 def _peaks(row: _Row, rig: RigFile) -> dict[str, float | None]:
-    """Return the largest of what the struts do, for an oscillation."""
+    """Return the largest of what the struts do, for an oscillation; of a tow their force."""
     if not row.run.oscillates:
-        return {}
+        return {} if row.force_n is None else {"strut_force_estimate_n": row.force_n}
     return {
         "strut_velocity_m_s": velocity_peak_m_s(row.run, rig.oscillator),
         "strut_acceleration_m_s2": acceleration_peak_m_s2(row.run, rig.oscillator),
