@@ -15,6 +15,7 @@ from analysis.kinematics.geometry import Geometry
 from analysis.kinematics.motion import DrivenDisplacements, MotionWaves, motion
 from analysis.water import Water, froude_number, reynolds_number
 from hardware.description import kinds
+from hardware.description.arrays import FloatArray
 from hardware.description.carriage_path import CarriagePath
 from hardware.description.lines import struts_over_turn
 from hardware.description.oscillator import Plane
@@ -23,7 +24,7 @@ from pmm.plan import check_table as table
 from pmm.plan.check import Check
 from pmm.plan.echoes import echo_limit
 from pmm.plan.findings import PlanFinding, PlanVerdict
-from pmm.plan.motion_peaks import omega_of
+from pmm.plan.motion_peaks import frequencies_hz, omega_of
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
 
@@ -121,31 +122,33 @@ def _gravity(rig: RigFile) -> float:
 
 
 def _of_waves(run: RunPlan, rig: RigFile, made: MotionWaves) -> Iterator[_Condition]:
-    speed, omega = run.set_point.carriage_speed_m_s, omega_of(run)
+    """Yield what goes with the frequency, of many lines at the one that is worst for each."""
+    speed = run.set_point.carriage_speed_m_s
     if not speed:
         return
-    gravity = _gravity(rig)
-    tau = omega * speed / gravity
-    yield _tau(tau, rig.oscillator.plane)
+    gravity, omegas = _gravity(rig), 2.0 * math.pi * np.array(frequencies_hz(run))
+    taus, highest = omegas * speed / gravity, float(omegas.max())
+    yield _tau(taus, rig.oscillator.plane)
     if rig.model is None or rig.model.length_m is None:
         return
     length = rig.model.length_m
     turning = np.abs(made.velocity[2] + run.set_point.turn_rate_rad_s).max()
     yield _Condition(table.TURNING, float(turning) * length / speed)
-    yield _Condition(table.WAVE_FREQUENCY, omega * math.sqrt(length / gravity))
+    yield _Condition(table.WAVE_FREQUENCY, highest * math.sqrt(length / gravity))
     check = _REDUCED.get(run.motion, table.REDUCED)
-    yield _below(check, omega * length / speed, check.numbers[-1] if check.numbers else math.nan)
+    yield _below(check, highest * length / speed, check.numbers[-1] if check.numbers else math.nan)
     if rig.tank is not None and rig.oscillator.plane is Plane.VERTICAL:
-        limit = echo_limit(rig.tank.width_m / length)
+        limit, tau = echo_limit(rig.tank.width_m / length), float(taus.min())
         if tau < limit:  # never below NaN: a tank broader or narrower than the ITTC's table
             yield _Condition(table.ECHO, tau, limit)
 
 
-def _tau(tau: float, plane: Plane) -> _Condition:
+def _tau(taus: FloatArray, plane: Plane) -> _Condition:
     """Slow manoeuvring tests stay below 1/4; faster tests of seakeeping are on either side."""
     critical, clearance = table.TAU_SWAY.numbers
     if plane is Plane.HORIZONTAL:
-        return _below(table.TAU_SWAY, tau, critical - clearance)
+        return _below(table.TAU_SWAY, float(taus.max()), critical - clearance)
+    tau = float(taus[np.abs(taus - critical).argmin()])
     near = abs(tau - critical) < clearance
     return _Condition(
         table.TAU_HEAVE, tau, critical, PlanVerdict.WARN if near else PlanVerdict.NOTE

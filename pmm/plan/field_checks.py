@@ -12,7 +12,7 @@ import numpy as np
 from hardware.description.kinds import RunKind
 from pmm.plan.check_table import CYCLES, RIPPLE, SAMPLING, SETTLING, STRUCTURE, TANK_MODE
 from pmm.plan.findings import PlanFinding, PlanVerdict
-from pmm.plan.motion_peaks import omega_of
+from pmm.plan.motion_peaks import frequencies_hz, omega_of
 from pmm.plan.rig_file import RigFile
 from pmm.plan.rig_tables import TankTable
 from pmm.plan.run_plan import RunPlan
@@ -24,7 +24,10 @@ _HARMONICS: Final = 6
 
 
 def field_findings(run: RunPlan, rig: RigFile) -> Iterator[PlanFinding]:
-    """Yield what the field advises against in a run, and what is near it."""
+    """Yield what the field advises against in a run, and what is near it.
+
+    Of many lines each is looked at, and the one that is worst is told.
+    """
     if not run.oscillates:
         return
     yield from _cycles(run)
@@ -46,7 +49,7 @@ def _cycles(run: RunPlan) -> Iterator[PlanFinding]:
 
 
 def _sampling(run: RunPlan, rig: RigFile) -> Iterator[PlanFinding]:
-    nyquist, highest = rig.sample_rate_hz / 2.0, _HARMONICS * run.set_point.frequency_hz
+    nyquist, highest = rig.sample_rate_hz / 2.0, _HARMONICS * frequencies_hz(run)[-1]
     if highest >= nyquist:
         yield PlanFinding(
             PlanVerdict.WARN,
@@ -62,23 +65,36 @@ def _sampling(run: RunPlan, rig: RigFile) -> Iterator[PlanFinding]:
 def _structure(run: RunPlan, rig: RigFile) -> Iterator[PlanFinding]:
     """Yield harmonics within 10 % of a structural mode, or three damping ratios if that is more."""
     nearest, damped = STRUCTURE.numbers
+    harmonics = [
+        (order, order * frequency_hz)
+        for frequency_hz in frequencies_hz(run)
+        for order in range(1, _HARMONICS + 1)
+    ]
     for mode in rig.modes:
         near = max(nearest, damped * mode.damping_ratio)
-        for order in range(1, _HARMONICS + 1):
-            harmonic = order * run.set_point.frequency_hz
-            off = harmonic / mode.frequency_hz - 1.0
-            if abs(off) >= near:
-                continue
-            strong = order <= _STRONG_HARMONICS
-            yield PlanFinding(
-                PlanVerdict.WARN if strong else PlanVerdict.NOTE,
-                STRUCTURE.quantity,
-                abs(off),
-                near,
-                run.name,
-                f"harmonic {order} at {harmonic:.4g} Hz is {off:+.1%} off the mode "
-                f"{mode.name!r} at {mode.frequency_hz:.4g} Hz; keep {near:.0%} off",
-            )
+        offs = [
+            (order > _STRONG_HARMONICS, abs(harmonic / mode.frequency_hz - 1.0), order, harmonic)
+            for order, harmonic in harmonics
+        ]
+        within = [off for off in offs if off[1] < near]
+        if not within:
+            continue
+        weak, off, order, harmonic = min(within)
+        yield PlanFinding(
+            PlanVerdict.NOTE if weak else PlanVerdict.WARN,
+            STRUCTURE.quantity,
+            off,
+            near,
+            run.name,
+            f"harmonic {order}{_of_line(run, harmonic / order)} at {harmonic:.4g} Hz is "
+            f"{harmonic / mode.frequency_hz - 1.0:+.1%} off the mode {mode.name!r} at "
+            f"{mode.frequency_hz:.4g} Hz; keep {near:.0%} off",
+        )
+
+
+def _of_line(run: RunPlan, frequency_hz: float) -> str:
+    """Say which line of many it is."""
+    return f" of the line at {frequency_hz:.4g} Hz" if run.set_point.own_orders else ""
 
 
 def _ripple(run: RunPlan, rig: RigFile) -> Iterator[PlanFinding]:
@@ -115,17 +131,17 @@ def _tank_modes(run: RunPlan, rig: RigFile) -> Iterator[PlanFinding]:
     """Yield a tank mode nearby; at speed the model runs away from what it stirs up."""
     if rig.tank is None or run.kind is RunKind.RESTORING:
         return
-    frequency, speed = run.set_point.frequency_hz, run.set_point.carriage_speed_m_s
+    speed, frequencies = run.set_point.carriage_speed_m_s, frequencies_hz(run)
     for n, mode in enumerate(tank_modes_hz(rig.tank), 1):
-        off = frequency / mode - 1.0
-        if abs(off) < _NEAR_TANK_MODE:
+        size, frequency = min((abs(each / mode - 1.0), each) for each in frequencies)
+        if size < _NEAR_TANK_MODE:
             yield PlanFinding(
                 PlanVerdict.NOTE if speed else PlanVerdict.WARN,
                 TANK_MODE.quantity,
-                abs(off),
+                size,
                 _NEAR_TANK_MODE,
                 run.name,
-                f"{frequency:.4g} Hz is {off:+.1%} off the tank's transverse mode {n} at "
-                f"{mode:.4g} Hz (wavelength {2.0 * rig.tank.width_m / n:.3g} m); keep "
+                f"{frequency:.4g} Hz is {frequency / mode - 1.0:+.1%} off the tank's transverse "
+                f"mode {n} at {mode:.4g} Hz (wavelength {2.0 * rig.tank.width_m / n:.3g} m); keep "
                 f"{_NEAR_TANK_MODE:.0%} off",
             )

@@ -14,8 +14,14 @@ from pmm.plan.run_plan import RunPlan
 
 
 def omega_of(run: RunPlan) -> float:
-    """Return the circular frequency in rad/s."""
+    """Return the circular frequency of the shaft in rad/s; of many lines that of their base."""
     return 2.0 * math.pi * run.set_point.frequency_hz
+
+
+def frequencies_hz(run: RunPlan) -> tuple[float, ...]:
+    """Return the frequencies at which a run moves, ascending: the shaft's, or each line's own."""
+    orders = sorted(set(run.set_point.own_orders or (1,)))
+    return tuple(order * run.set_point.frequency_hz for order in orders)
 
 
 def velocity_peak_m_s(run: RunPlan, oscillator: Oscillator) -> float:

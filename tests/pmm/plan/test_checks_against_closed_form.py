@@ -191,6 +191,34 @@ def test_cycles_and_samples() -> None:
     assert (one.value, one.limit) == (pytest.approx(6.06), 6.0)
 
 
+def _many(base_hz: float, orders: tuple[int, ...], speed_m_s: float = 0.0) -> RunPlan:
+    one = run(base_hz, 1e-3, speed_m_s=speed_m_s)
+    lines = tuple(Line(order, 1.0 / len(orders)) for order in orders)
+    return replace(one, set_point=replace(one.set_point, lines=lines))
+
+
+def test_each_of_many_lines_is_looked_at() -> None:
+    """Lines at 0.5 and 0.8 Hz; the base of 0.05 Hz is none of them, and has nothing near it."""
+    path = _many(0.05, (10, 16))
+    # 3 x 0.8 = 2.4 Hz; 1 x 0.5 and 6 x 0.05 = 0.3 Hz; 5 x 0.8 = 4 Hz is a note.
+    frame = (StructuralMode("a", 2.45), StructuralMode("b", 0.3), StructuralMode("c", 4.0))
+    found = [f for f in field_findings(path, rig_file(modes=frame)) if "struct" in f.quantity]
+    assert [(f.verdict, f.value) for f in found] == [
+        ("warn", pytest.approx(0.05 / 2.45)),
+        ("note", pytest.approx(0.0, abs=1e-12)),
+    ]
+    assert (
+        "harmonic 3 of the line at 0.8 Hz at 2.4 Hz is -2.0% off the mode 'a'" in found[0].message
+    )
+    slow = rig_file(hardware=RigConfiguration(cycle_rate_hz=9.0))
+    (one,) = [f for f in field_findings(path, slow) if "6th" in f.quantity]
+    assert (one.value, one.limit) == (pytest.approx(4.8), 4.5)
+    # A tank whose second mode, of the wavelength W, is at 0.8 Hz; the line of 0.5 Hz is at none.
+    tank = TankTable(100.0, G / (2.0 * math.pi * 0.8**2), 0.5, 4.0)
+    at = [f for f in field_findings(path, rig_file(tank=tank)) if "tank" in f.quantity]
+    assert [(f.verdict, "mode 2" in f.message) for f in at] == [("warn", True)]
+
+
 def test_the_time_of_a_run_is_the_sum_of_its_parts() -> None:
     rig = rig_file()
     first = run(0.5, 0.02, speed_m_s=2.0, pause_before_s=60.0)

@@ -8,6 +8,7 @@ import pytest
 
 from hardware.description.body import ShipModel
 from hardware.description.kinds import Motion, RunKind
+from hardware.description.lines import Line
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963
 from hardware.description.setpoint import SetPoint
 from pmm.plan.condition_checks import condition_findings
@@ -176,3 +177,21 @@ def test_of_many_runs_each_number_is_stated_at_its_largest_and_warnings_stay_apa
     assert stated["w' = w L / U"] == ("0.1-0.05", pytest.approx(0.2 * math.pi * L))
     assert stated["w sqrt(L / g)"][0] == "0.2-0.1"
     assert list(stated) == sorted(stated)
+
+
+def test_of_many_lines_the_worst_counts_and_not_their_base() -> None:
+    """Sway at 0.5 and 0.8 Hz, 0.8 m/s: w = 5.03 and 3.14 rad/s; the base of 0.05 Hz is at rest."""
+    lines = (Line(10, 0.6), Line(16, 0.4))
+    point = SetPoint(0.05, 0.02, 0.0, 0.8, lines=lines)
+    found = told(run(set_point=point, motion=Motion.SWAY), rig_file(HORIZONTAL_1963, tank=TANK))
+    highest = 2.0 * math.pi * 0.8
+    for quantity, value, verdict in (
+        ("w' = w L / U", highest * L / 0.8, "warn"),
+        ("w U / g", highest * 0.8 / G, "warn"),
+        ("w sqrt(L / g)", highest * math.sqrt(L / G), "note"),
+    ):
+        assert (found[quantity].value, found[quantity].verdict) == (pytest.approx(value), verdict)
+    # Heave: the line that is nearest to 1/4 counts, at 1.2 m/s that of 0.35 Hz, tau = 0.269.
+    heave = SetPoint(0.05, 0.02, 0.0, 1.2, lines=(Line(7, 0.6), Line(16, 0.4)))
+    tau = told(run(set_point=heave), rig_file(tank=TANK))["w U / g (keep off 1/4)"]
+    assert (tau.value, tau.verdict) == (pytest.approx(0.7 * math.pi * 1.2 / G), "warn")
