@@ -68,7 +68,7 @@ STRUT_FORCE: Final = _rig_limit(
 )
 GAUGE_FORCE: Final = Check(
     "gauge force, estimate [N]",
-    "of each strut: refuse above its gauge's full scale; warn above {0:.0%} of it",
+    "of each strut: refuse above its gauge's full scale; warn above {0:.0%} of what rest leaves",
     f"{_RIG}; the share is {_OURS}",
     "lower the frequency or the amplitude, or tow slower or at less drift: the estimate may be "
     "short of the truth",

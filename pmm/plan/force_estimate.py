@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from analysis.ideal_rig import incidence, mass_matrix, weight_matrix
+from analysis.ideal_rig import held_at_rest_n, incidence, mass_matrix, weight_matrix
 from hardware.description.arrays import ComplexArray, FloatArray
 from hardware.description.body import Body, ShipModel
 from hardware.description.channels import FORCES
@@ -110,6 +110,25 @@ def steady_forces_n(run: RunPlan, rig: RigFile) -> FloatArray:
     return _at_struts(np.sum(loads, axis=0), rig.oscillator).real
 
 
+def held_n(run: RunPlan, rig: RigFile) -> FloatArray:
+    """Return what the struts hold at rest, aft and fore, in newtons, shape ``(2,)``.
+
+    Weight less buoyancy, with a known mass, and what weight and restoring ask where a trim sets the
+    model; zeros where the rig's file describes no model. A tare takes it off.
+    """
+    if rig.model is None:
+        return np.zeros(2)
+    point, added = run.set_point, run.known_mass
+    trimmed = np.array([0.0, point.drift_rad])
+    moves = _Moves(trimmed, np.zeros(2), np.zeros(2), np.zeros(2))
+    loads = [matrix @ moved for matrix, moved, _ in _reactions(run, rig, rig.model, moves)]
+    held = held_at_rest_n(rig.model, rig.oscillator, point.medium)
+    if added is not None:
+        mass = Body(added.mass_kg, 0.0, added.x_m)
+        held = held + held_at_rest_n(mass, rig.oscillator, point.medium)
+    return np.asarray(held + _at_struts(np.sum(loads, axis=0), rig.oscillator).real)
+
+
 def force_peaks_n(run: RunPlan, rig: RigFile) -> FloatArray | None:
     """Return an estimate of the largest force of each strut, aft and fore, in newtons.
 
@@ -130,7 +149,7 @@ def oscillating_forces_n(run: RunPlan, rig: RigFile) -> FloatArray:
     sines = single_sines(run) if run.oscillates else ()
     estimates = [force_estimate(sine, rig) for sine in sines]
     sizes = [np.abs(estimate.forces) for estimate in estimates if estimate is not None]
-    return np.sum([np.zeros(2), *sizes], axis=0) * rod_factor(run, rig.oscillator)
+    return np.asarray(np.sum([np.zeros(2), *sizes], axis=0) * rod_factor(run, rig.oscillator))
 
 
 def force_peak_n(run: RunPlan, rig: RigFile) -> float | None:

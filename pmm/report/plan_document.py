@@ -142,7 +142,7 @@ _RUNS: Final[tuple[Column[_Row], ...]] = (
     Column("U", lambda row: row.run.set_point.carriage_speed_m_s, unit="m/s", number=True,
            written=lambda speed: f"{speed:g}" if speed else ""),
     _turning("periods", "", lambda row: _periods(row.run)),
-    Column("force, est.", "force_n", unit="N", number=True,
+    Column("force, est.", lambda row: row.force_n, unit="N", number=True,
            written=lambda force_n: "" if force_n is None else f"{force_n:.1f}"),
     number("way", "tank_length_m", lambda way: f"{way:.1f}" if way else "", "m"),
     number("time", "duration_s", clock),

@@ -3,13 +3,16 @@
 import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from hardware.description.body import ShipModel
 from hardware.description.kinds import Motion, RunKind
+from hardware.description.known_loads import KnownMass
 from hardware.description.oscillator import HORIZONTAL_1963, VERTICAL_1963
-from hardware.description.setpoint import SetPoint
+from hardware.description.setpoint import Medium, SetPoint
+from hardware.rig_configuration import RigConfiguration, read_rig
 from pmm.plan.checks import check_plan
 from pmm.plan.findings import PlanFinding
 from pmm.plan.force_estimate import force_peak_n, steady_forces_n
@@ -18,6 +21,7 @@ from pmm.plan.plan import Plan
 from pmm.plan.rig_file import RigFile
 from pmm.plan.rig_tables import Gauge, HullEstimate
 from pmm.plan.run_plan import RunPlan
+from sim.devices.bench_file import DRIVERS
 from tests.pmm.plan.plans import rig_file, run
 
 HALF_M, U = 0.5, 1.2
@@ -103,12 +107,45 @@ def test_each_strut_is_held_against_its_own_gauge() -> None:
 
 @pytest.mark.parametrize(("table", "field"), [("[hull]", "hull"), ("[model]", "model")])
 def test_tows_that_are_not_checked_for_force_are_named(table: str, field: str) -> None:
+    nothing: dict[str, Any] = {field: None}
     plan = Plan("a", Path("plan.toml"), Path("rig.toml"), (towed(20.0),), "", "0")
     whole = [one.message for one in check_plan(plan, horizontal(500.0, 500.0))]
-    bare = [
-        one.message for one in check_plan(plan, replace(horizontal(20.0, 20.0), **{field: None}))
-    ]
+    bare = [one.message for one in check_plan(plan, replace(horizontal(20.0, 20.0), **nothing))]
     text = {"hull": "the force of tows is", "model": "forces are"}[field]
     wanted = f"rig.toml has no {table}: {text} not checked"
     assert wanted in bare
     assert not [one for one in whole if "force" in one]
+
+
+def amplifier(full_scale_n: float) -> RigConfiguration:
+    channel = {"name": "force_aft", "object": "9130:1", "scale": 1e-3, "full_scale": full_scale_n}
+    bus = {"interface": "virtual", "channel": "nowhere"}
+    amplifier = {"driver": "cia404-amplifier", "node": 4, "channels": [channel]}
+    return read_rig({"bus": bus, "forces": [amplifier]}, DRIVERS)
+
+
+@pytest.mark.parametrize("mass_kg", [0.0, 5.0])
+def test_an_amplifier_bears_what_the_strut_holds_at_rest(mass_kg: float) -> None:
+    """In air aft m g (l - x_G) / 2 l at rest, beside m (l - x_G) / 2 l of the acceleration."""
+    point = SetPoint(1.4, 0.02, medium=Medium.AIR)
+    known = KnownMass(mass_kg, x_m=-HALF_M) if mass_kg else None
+    dry = replace(run(), kind=RunKind.DRY, set_point=point, known_mass=known)
+    aft_kg = MASS_KG * (HALF_M - CG_X_M) / (2.0 * HALF_M) + mass_kg
+    wanted = aft_kg * (9.80665 + (2.0 * math.pi * 1.4) ** 2 * 0.02)
+    model = ShipModel(MASS_KG, 27.5, CG_X_M)
+    for times, verdicts in ((0.99, ["refuse"]), (1.01, ["warn"]), (1.3, [])):
+        rig = rig_file(model=model, hardware=amplifier(times * wanted), gauges=())
+        found = at_gauges(dry, rig)
+        assert [one.verdict for one in found] == verdicts
+        assert [one.value for one in found] == [pytest.approx(wanted)] * len(verdicts)
+    # What [[gauges]] states is of tared readings, and what floats holds itself.
+    tared = rig_file(model=model, gauges=(Gauge("force_aft", 0.5 * wanted),))
+    assert at_gauges(dry, tared) == []
+    wet = replace(run(1.4, 1e-3), kind=RunKind.OSCILLATION)
+    floats = rig_file(model=model, hardware=amplifier(0.3 * wanted), gauges=())
+    assert at_gauges(wet, floats) == []
+
+
+def test_a_horizontal_rig_holds_nothing_at_rest() -> None:
+    rig = replace(horizontal(20.0, 60.0), hardware=amplifier(20.0))
+    assert at_gauges(towed(20.0), rig) == []
