@@ -126,7 +126,8 @@ def design(
             )
     with doing("looking at what each run would tell"):
         selection = designed(design_file)
-    target = Path(output) if output is not None and selection.steps else None
+    to_make = bool(selection.steps or design_file.tables.runs)
+    target = Path(output) if output is not None and to_make else None
     document = design_document(design_file, selection, target)
     tell(document, as_json=as_json)
     figures = [] if plot is None else write_figures(document.figures, Path(plot), design_file.name)

@@ -1,6 +1,5 @@
 """A campaign's recordings, sorted into what is to be done with each."""
 
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,11 +12,9 @@ from hardware.description.setpoint import Medium, SetPoint
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.recording_source import COMPLETE, RecordingSource
 from pmm.campaign.runs import AtRest, Run
+from pmm.coefficients.steered_runs import usual_rate_hz, why_steered
 from pmm.coefficients.tasks import MeasuringChain, Task
 
-_BY_STEERING = "`pmm steering FOLDER` takes such runs"
-_LAID = f"it oscillates with a laid rudder; {_BY_STEERING}"
-_OTHER_RATE = f"its propeller turns at another rate than in most runs; {_BY_STEERING}"
 _NO_STEERING = (
     "it states neither rudder_angle_deg nor revolutions_hz in the campaign file; give them where a "
     "propeller turned or a rudder was there"
@@ -74,8 +71,7 @@ def work_of(
     missing: list[str] = []
     flags: list[Flag] = []
     all_runs: tuple[Run | AtRest, ...] = (*campaign.at_rest, *campaign.runs)
-    rates = Counter(run.revolutions_hz for run in all_runs if run.kind.oscillates or run.kind.towed)
-    usual_hz = rates.most_common(1)[0][0] if rates else 0.0
+    usual_hz = usual_rate_hz(all_runs)
     for run in all_runs:
         reason = _why_not(run, leave_out)
         if reason is None and run.kind is not RunKind.ZERO:
@@ -114,9 +110,7 @@ def _other_steering(run: Run | AtRest, usual_hz: float, *, with_steering: bool) 
     """Say why a run's rudder or propeller is not as it is wanted, as :func:`_why_not` does."""
     if with_steering:
         return None if run.rudder_angle_rad or run.revolutions_hz else _NO_STEERING
-    if run.rudder_angle_rad and run.kind.oscillates:
-        return _LAID
-    return _OTHER_RATE if run.revolutions_hz != usual_hz else None
+    return why_steered(run, usual_hz)
 
 
 def _why_not(run: Run | AtRest, leave_out: Sequence[str]) -> str | None:

@@ -5,9 +5,9 @@ matrices of runs to choose from, and the tables of :mod:`pmm.design.design_table
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from copy import deepcopy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -22,11 +22,11 @@ from analysis.design.candidate import CandidateRun
 from analysis.design.design_fits import DesignTarget
 from analysis.design.noise import Noise
 from hardware.description.errors import ConfigurationError
-from hardware.description.kinds import RunKind
-from hardware.description.setpoint import Medium
 from pmm.campaign.model_uncertainty import take_uncertainty
 from pmm.coefficients.stated_inputs import largest, of_gauges, of_model
+from pmm.coefficients.steered_runs import usual_rate_hz
 from pmm.configuration import Fault, as_error, limit_faults, read_toml, validate
+from pmm.design.counted_runs import grid_faults, oscillates_in_water, uncounted_runs
 from pmm.design.design_tables import DesignLimits, DesignTables, GapTable
 from pmm.design.grid import RunGrid, between_s, grid_of
 from pmm.design.targets import targets_of
@@ -59,6 +59,8 @@ class DesignFile:
         Runs that are made in any case, zero and control runs among them.
     made_runs
         Those of them that tell of the coefficients, or runs that were made before.
+    uncounted
+        Why other oscillations of them in water are not counted, by run.
     time_s
         That the runs to be chosen may take.
     cycles
@@ -84,6 +86,7 @@ class DesignFile:
     time_s: float
     cycles: tuple[BodyCycle, ...] = ()
     gap: GapTable | None = None
+    uncounted: Mapping[str, str] = field(default_factory=dict)
 
     def tank_time_s(self, chosen: Sequence[Sequence[RunPlan]] = ()) -> float:
         """Return how long the plan takes with some entries behind what is made in any case.
@@ -169,7 +172,7 @@ def _design(
         for entry in entries[fixed_entries:]
         for pair in _singles(entry, plan.defaults, rig, reading.channels)
     ]
-    faults = [*_grid_faults([run for _, run in candidates]), *_limit_faults(tables.limits)]
+    faults = [*grid_faults([run for _, run in candidates]), *_limit_faults(tables.limits)]
     belief = _belief(tables, rig, faults)
     grid = grid_of(candidates, rig, tables.limits, between_s(fixed_plan, rig, reading.channels))
     if candidates and not grid.runs:
@@ -185,15 +188,17 @@ def _design(
         faults.append(Fault(("targets",), "are missing, and so is limits.time_h; give either"))
     if faults or belief is None:
         raise as_error(path, faults, original)
+    uncounted = uncounted_runs(fixed, usual_rate_hz(grid.runs))
     made_runs = tuple(
         CandidateRun(run.set_point, run.periods, np.inf)
         for run in fixed
-        if _tells_coefficients(run)
+        if oscillates_in_water(run) and run.name not in uncounted
     )
     return DesignFile(
         plan.name or path.resolve().parent.name, path, plan_table, reading.rig_path, rig,
         tuple(reading.channels), fixed_plan, fixed, made_runs, grid, belief, _noise(tables, rig),
         _stated(tables, rig), targets, np.inf if hours is None else 3600.0 * hours, gap=tables.gap,
+        uncounted=uncounted,
     )  # fmt: skip
 
 
@@ -216,26 +221,6 @@ def _gap_faults(gap: GapTable | None) -> Iterator[Fault]:
         yield Fault(("gap", "least_log_odds"), f"= {gap.least_log_odds:g} should be in (0, 20]")
     if gap is not None and not 1 <= gap.batch <= 5:
         yield Fault(("gap", "batch"), f"= {gap.batch} should be from 1 to 5")
-
-
-def _tells_coefficients(run: RunPlan) -> bool:
-    kinds = (RunKind.OSCILLATION, RunKind.CONTROL)
-    return run.kind in kinds and run.set_point.medium is Medium.WATER
-
-
-def _grid_faults(runs: list[RunPlan]) -> Iterator[Fault]:
-    kinds = sorted({str(run.kind) for run in runs if run.kind is not RunKind.OSCILLATION})
-    if kinds:
-        yield Fault(
-            ("grid",),
-            f"holds runs of the kind {', '.join(kinds)}; only oscillations in water are chosen "
-            "from, others belong to [[runs]]",
-        )
-    if any(run.set_point.own_orders for run in runs):
-        yield Fault(
-            ("grid",), "holds motions of many lines; single sines are chosen from, others belong "
-            "to [[runs]]",
-        )  # fmt: skip
 
 
 def _belief(tables: DesignTables, rig: RigFile, faults: list[Fault]) -> Belief | None:

@@ -23,9 +23,9 @@ from pmm.campaign.file_names import CAMPAIGN_FILE
 from pmm.coefficients.campaign_cycles import campaign_cycles
 from pmm.coefficients.settings import settings_of
 from pmm.coefficients.stated_inputs import largest
+from pmm.design.counted_runs import MANY_LINES
 from pmm.design.design_file import DesignFile
 
-_LINES = "a design goes on from single sines; runs of many lines are not among them"
 _ENOUGH = 3  # runs, or repeats beyond the first of their kind: fewer say too little of the noise
 
 
@@ -67,6 +67,7 @@ def continued_design(file: DesignFile, parts: Sequence[MeasuredRuns]) -> DesignF
     table = {key: value for key, value in file.plan_table.items() if key != "runs"}
     going_on = replace(
         file, plan_table=table, tables=replace(file.tables, runs=()), fixed=(),
+        uncounted={},
         made_runs=candidates, stated=stated,
         cycles=tuple(with_repeats(cycle, spread) for cycle in cycles),
     )  # fmt: skip
@@ -144,7 +145,7 @@ def read_measured_runs(file: DesignFile, folder: Path, executor: Executor) -> Me
     made_runs = [runs[cycle.name] for cycle in cycles]
     candidates = tuple(CandidateRun(run.set_point, run.periods, math.inf) for run in made_runs)
     failures = {failure.name: failure.message for failure in recorded.failed}
-    failures |= {cycle.name: _LINES for cycle in moving if cycle.lines}
+    failures |= {cycle.name: MANY_LINES for cycle in moving if cycle.lines}
     return MeasuredRuns(candidates, tuple(cycles), recorded.stated, failures)
 
 

@@ -1,7 +1,7 @@
 """What ``pmm plan design`` shows: what each run buys, and how well each coefficient is known."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -114,13 +114,19 @@ def design_document(file: DesignFile, design: Design, target: Path | None) -> Do
             "Coefficients", _KNOWN, () if is_complete else design.expected_coefficients, titled=True
         ),
         Notes([Note("warning", message) for message in design.why], key="unmet"),
-        Notes([Note("note", message) for message in (*_left_out(file), *_unwritten(design))]),
+        Notes(
+            [
+                Note("note", message)
+                for message in (*_left_out(file), *_uncounted(file), *_unwritten(file, design))
+            ]
+        ),
         Figure("uncertainty", _CAPTION, partial(design_figure, file.name, design)),
         Data("plan", target),
         Data("rig", file.rig_path),
         Data("possible", design.met),
         Data("candidates", len(file.grid.runs)),
         Data("left_out", file.grid.left_out),
+        Data("uncounted", file.uncounted),
         Data("runs_made", len(file.cycles)),
         Data("known", [_known_data(coefficient) for coefficient in design.expected_now]),
         Data("steps", [_step_data(step) for step in design.steps]),
@@ -132,13 +138,21 @@ def design_document(file: DesignFile, design: Design, target: Path | None) -> Do
     return Document("", "design of a plan", (Section("", contents),), SCHEMA)
 
 
-def _unwritten(design: Design) -> tuple[str, ...]:
-    return () if design.steps else ("no run is to be made, so there is no plan to be written",)
+def _unwritten(file: DesignFile, design: Design) -> tuple[str, ...]:
+    to_make = design.steps or file.tables.runs
+    return () if to_make else ("no run is to be made, so there is no plan to be written",)
+
+
+def _uncounted(file: DesignFile) -> Iterator[str]:
+    """Yield the runs that are made in any case and meet no target, a reason at a time."""
+    for reason in dict.fromkeys(file.uncounted.values()):
+        names = ", ".join(name for name, why in file.uncounted.items() if why == reason)
+        yield f"not counted: {names}: {reason}"
 
 
 def _summary(file: DesignFile, design: Design) -> str:
     runs = sum(step.repeats for step in design.steps)
-    time = clock(design.steps[-1].time_s) if design.steps else clock(0.0)
+    time = clock(design.steps[-1].time_s if design.steps else file.tank_time_s())
     ends = (
         "no target was given: all coefficients together, in the time"
         if not file.targets

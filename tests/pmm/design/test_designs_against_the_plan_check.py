@@ -264,6 +264,49 @@ def test_what_the_runs_made_in_any_case_meet_is_not_made_better_for_what_none_te
     assert [why.startswith("N_r at 0.12 Hz") for why in told["unmet"]] == [True]
 
 
+SWAYS = (
+    "[[runs]]\nmotion = 'sway'\nname = 'first'\nfrequencies_hz = [0.1, 0.15]\n"
+    "amplitudes_mm = 150.0\nspeeds_m_s = 1.2\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        ("rudder_angles_deg = 20.0", "with a laid rudder"),
+        ("revolutions_hz = 8.0", "at another rate"),
+        ("lines = [3, 5]", "runs of many lines"),
+    ],
+)
+def test_a_run_that_the_analysis_leaves_out_meets_no_target(
+    tmp_path: Path, change: str, why: str
+) -> None:
+    """With such runs besides, the design is that without them."""
+    targets = "[targets]\nY_v = 3.0\n"
+    alone = json.loads(_design(tmp_path, DESIGN + targets, "--json").stdout)
+    runs = SWAYS.replace("[0.1, 0.15]", "0.03") if "lines" in change else SWAYS
+    result = _design(tmp_path, f"{DESIGN}{runs}{change}\n{targets}", "--json")
+    assert result.exit_code == 0, result.output
+    told = json.loads(result.stdout)
+    assert alone["steps"]
+    for key in ("motion", "frequency_hz", "eccentricity_m", "periods", "repeats"):
+        assert [step[key] for step in told["steps"]] == [step[key] for step in alone["steps"]]
+    assert told["uncounted"]
+    assert all(name.startswith("first") for name in told["uncounted"])
+    assert all(why in reason for reason in told["uncounted"].values())
+
+
+def test_a_plan_is_written_where_what_is_made_in_any_case_is_enough(tmp_path: Path) -> None:
+    target = tmp_path / "designed.toml"
+    text = f"{DESIGN}{SWAYS}[targets]\nY_v = 100.0\n"
+    result = _design(tmp_path, text, "--output", str(target), "--json")
+    assert result.exit_code == 0, result.output
+    told = json.loads(result.stdout)
+    assert (told["steps"], told["unmet"], told["uncounted"]) == ([], [], {})
+    plan, _ = read_plan_and_rig(target)
+    assert [run.set_point.frequency_hz for run in plan.runs if run.oscillates] == [0.1, 0.15]
+
+
 def test_own_limits_leave_runs_out(tmp_path: Path) -> None:
     text = DESIGN + "[targets]\nY_v = 5.0\n[limits]\nw_u_g = 0.09\n"
     told = json.loads(_design(tmp_path, text, "--json").stdout)
@@ -291,6 +334,11 @@ def test_own_limits_leave_runs_out(tmp_path: Path) -> None:
             "[[grid]]\nmotion = 'sway'\nfrequencies_hz = 0.1\namplitudes_mm = 9.0\n"
             "lines = [1, 3]\n[targets]\nY_v = 1.0",
             "motions of many lines",
+        ),
+        (
+            "[[grid]]\nmotion = 'sway'\nfrequencies_hz = 0.1\namplitudes_mm = 9.0\n"
+            "rudder_angles_deg = 20.0\n[targets]\nY_v = 1.0",
+            "it oscillates with a laid rudder",
         ),
         ("[[grid]]\nkind = 'zero'\n[targets]\nY_v = 1.0", "only oscillations in water"),
         ("[[grid]]\nmotion = 'heave'\nfrequencies_hz = 1.0\namplitudes_mm = 1.0", "grid[3]"),
