@@ -8,6 +8,7 @@ from hardware.description.setpoint import ANGLE_KEYS
 from hardware.rig_configuration import RigPart
 from pmm.plan.rig_file import RigFile
 from pmm.plan.run_plan import RunPlan
+from pmm.recorder.live_path import HOLD_CYCLES
 
 
 def shaft_ramp_s(run: RunPlan, rig: RigFile) -> float:
@@ -24,6 +25,11 @@ def carriage_ramp_s(run: RunPlan, rig: RigFile) -> float:
     return run.set_point.carriage_speed_m_s / min(accelerations) if accelerations else 0.0
 
 
+def hold_s(rig: RigFile) -> float:
+    """Return how long a run goes on behind its gate, at speed."""
+    return HOLD_CYCLES / rig.sample_rate_hz
+
+
 def carriage_track_m(rig: RigFile) -> float | None:
     """Return the length of the carriage's own track; ``None`` where its driver has none."""
     settings = None if rig.hardware.carriage is None else rig.hardware.carriage.settings
@@ -35,11 +41,11 @@ def tank_length_m(run: RunPlan, rig: RigFile) -> float:
     """Return the way of the carriage from rest to rest: ``U (t + U / a)``.
 
     In ``t`` the carriage's speed settles, then the shaft comes to speed, settles, waits at most a
-    period for its pulse, and turns for all periods asked. Of a carriage that is led ``U`` is the
-    mean over a turn.
+    period for its pulse, turns for all periods asked, and goes on until the last samples have come.
+    Of a carriage that is led ``U`` is the mean over a turn.
     """
     settle_s = _setting(rig.hardware.carriage, "settle_s") or 0.0
-    at_speed_s = settle_s + run.moving_s + shaft_ramp_s(run, rig)
+    at_speed_s = settle_s + run.moving_s + hold_s(rig) + shaft_ramp_s(run, rig)
     led = CarriagePath.of(rig.oscillator, run.set_point)
     speed = run.set_point.carriage_speed_m_s if led is None else led.mean_m_s
     return speed * (at_speed_s + carriage_ramp_s(run, rig))
@@ -52,7 +58,7 @@ def run_s(run: RunPlan, before: RunPlan | None, rig: RigFile) -> float:
     operator does by hand is not counted.
     """
     parked = setting_s(run, before, rig) + run.pause_before_s
-    moving = run.moving_s + 2.0 * (shaft_ramp_s(run, rig) + carriage_ramp_s(run, rig))
+    moving = run.moving_s + hold_s(rig) + 2.0 * (shaft_ramp_s(run, rig) + carriage_ramp_s(run, rig))
     speed = run.set_point.carriage_speed_m_s
     back = tank_length_m(run, rig) / max(speed, 1.0) if speed else 0.0
     return parked + moving + back

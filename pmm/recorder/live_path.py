@@ -23,6 +23,9 @@ An amplifier gives up a frame that is missing after 2 cycles: at half of this no
 At twice, what is recorded last before a device falls silent is shown, and flushed, 4 cycles later.
 """
 
+HOLD_CYCLES: Final = REACH + 2 * PATIENCE_CYCLES + 4
+"""For how many cycles a run goes on behind its gate, for the samples beyond the gate's edge."""
+
 
 @dataclass(frozen=True)
 class CycleSamples:

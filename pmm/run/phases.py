@@ -7,17 +7,15 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Final
 
-from analysis.resolver.weights import REACH
 from hardware.description.kinds import RunKind
 from pmm.plan.run_plan import RunPlan
-from pmm.recorder.live_path import PATIENCE_CYCLES, LivePath
+from pmm.recorder.live_path import HOLD_CYCLES, LivePath
 from pmm.run.conduct import Conduct, check_frequency, check_speed, check_standing
 from pmm.run.errors import PulseOverdueError
 from pmm.run.gate import GateState
 from pmm.run.states import State
 
 _OVERDUE_TURNS: Final = 4.5  # beyond the limit of the photocells' own drivers
-_HOLD_CYCLES: Final = REACH + 2 * PATIENCE_CYCLES + 4  # for the samples beyond the gate's edge
 
 
 def _enter_homing(c: Conduct) -> None:
@@ -174,7 +172,7 @@ def _gate_s(run: RunPlan) -> float:
 
 def _hold(c: Conduct) -> State | None:
     """Wait for the last samples, then make the final reading."""
-    if c.rig.number - c.since < _HOLD_CYCLES:
+    if c.rig.number - c.since < HOLD_CYCLES:
         return None
     c.recording.finish()
     if c.present.kind is RunKind.PUSH and c.present.load is not None:

@@ -50,17 +50,18 @@ def refused(run: RunPlan, rig: RigFile) -> list[str]:
 
 
 def test_the_way_has_ramps_and_settling_in_it() -> None:
-    # 2 m/s at 0.5 m/s2: 4 s of ramp (two halves of the way), 0.5 s to settle, 10 s of run.
-    assert tank_length_m(tow(2.0), rig_with()) == pytest.approx(2.0 * (4.0 + 0.5 + 10.0))
+    # 2 m/s at 0.5 m/s2: 4 s of ramp (two halves of the way), 0.5 s to settle, 10 s of run, and
+    # 15 cycles at 100 Hz until the last samples have come.
+    assert tank_length_m(tow(2.0), rig_with()) == pytest.approx(2.0 * (4.0 + 0.5 + 10.15))
     # A slower ramp of the tank's table counts in place of the carriage's own.
     slow = replace(TANK, carriage_acceleration_m_s2=0.25)
-    assert tank_length_m(tow(2.0), rig_with(slow)) == pytest.approx(2.0 * (8.0 + 0.5 + 10.0))
+    assert tank_length_m(tow(2.0), rig_with(slow)) == pytest.approx(2.0 * (8.0 + 0.5 + 10.15))
 
 
 def test_a_way_beyond_the_track_is_refused_with_its_place() -> None:
     assert refused(tow(2.0), rig_with(track_m=[0.0, 29.5])) == []
     (text,) = refused(tow(2.0), rig_with(track_m=[5.0, 33.5]))
-    assert text.startswith("tank length [m] = 29 is above 28.5 (the carriage's own track)")
+    assert text.startswith("tank length [m] = 29.3 is above 28.5 (the carriage's own track)")
     # Without a table of the tank the carriage's own limits hold.
     (text,) = refused(tow(2.0), rig_with(None, track_m=[5.0, 33.5]))
     assert "is above 28.5" in text

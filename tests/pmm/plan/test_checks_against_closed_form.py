@@ -89,10 +89,10 @@ def test_frequency_and_amplitude_of_oscillator_and_drives() -> None:
 
 
 def test_the_way_of_the_carriage() -> None:
-    """13 periods and one for the pulse, the shaft's 1 Hz/s, and 0.5 m/s^2 at both ends."""
+    """13 periods, one for the pulse, 15 cycles to wait, 1 Hz/s of the shaft, 0.5 m/s^2 twice."""
     rig = rig_file()
     one = run(0.5, speed_m_s=2.0)
-    way = 2.0 * (14 / 0.5 + 0.5 / 1.0 + 2.0 / 0.5)
+    way = 2.0 * (14 / 0.5 + 0.15 + 0.5 / 1.0 + 2.0 / 0.5)
     assert tank_length_m(one, rig) == pytest.approx(way)
     assert not _refused(one, rig)
     short = rig_file(tank=TankTable(way - 0.1, 4.0, 0.5, 4.0))
@@ -102,7 +102,7 @@ def test_the_way_of_the_carriage() -> None:
     assert (fast.value, fast.limit) == (4.5, 4.0)
     tow = replace(one, kind=RunKind.STRAIGHT_TOW, set_point=replace(one.set_point, frequency_hz=0),
                   duration_s=20.0)  # fmt: skip
-    assert tank_length_m(tow, rig) == pytest.approx(2.0 * (20.0 + 4.0))
+    assert tank_length_m(tow, rig) == pytest.approx(2.0 * (20.0 + 0.15 + 4.0))
 
 
 def test_a_mass_in_air_needs_half_its_inertia_at_each_strut() -> None:
@@ -223,17 +223,18 @@ def test_the_time_of_a_run_is_the_sum_of_its_parts() -> None:
     rig = rig_file()
     first = run(0.5, 0.02, speed_m_s=2.0, pause_before_s=60.0)
     ramps = 2.0 * (0.5 / 1.0 + 2.0 / 0.5)
+    still = 14 / 0.5 + 0.15  # 15 cycles behind the gate, at 100 Hz
     back = tank_length_m(first, rig) / 2.0
     # Axes: 20 mm at 5 mm/s and 50 mm/s^2; then half a turn at 0.2 rad/s and 1 rad/s^2.
     setting = 0.02 / 0.005 + 0.005 / 0.05
-    assert run_s(first, None, rig) == pytest.approx(60.0 + setting + 14 / 0.5 + ramps + back)
+    assert run_s(first, None, rig) == pytest.approx(60.0 + setting + still + ramps + back)
     second = run(0.5, 0.02, math.pi)
     turned = math.pi / 0.2 + 0.2 / 1.0
     times = duration_rows((first, second), rig)
-    assert times[1] == pytest.approx(turned + 14 / 0.5 + 1.0)
+    assert times[1] == pytest.approx(turned + still + 1.0)
     near = run(0.5, 0.0201)
     tiny = 2.0 * math.sqrt(0.0001 / 0.05)
-    assert run_s(near, run(0.5, 0.02), rig) == pytest.approx(tiny + 29.0)
+    assert run_s(near, run(0.5, 0.02), rig) == pytest.approx(tiny + still + 1.0)
 
 
 def _plan(*runs: RunPlan) -> Plan:

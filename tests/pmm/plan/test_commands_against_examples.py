@@ -108,7 +108,7 @@ def test_what_is_shown_are_the_plan_s_own_numbers() -> None:
     heave = document["runs"][1]
     assert heave["strut_velocity_m_s"] == pytest.approx(2.0 * 3.141592653589793 * 0.8 * 0.01)
     table = _pmm("plan", "show", _example("manual")).output
-    assert "manual-run: 13 runs, 2:48 at most" in table
+    assert "manual-run: 13 runs, 2:50 at most" in table
     assert re.search(r"heave-f0.8-a10 +0.8 +10 +0.0 +6 ", table)
 
 
