@@ -47,6 +47,16 @@ def test_a_run_s_largest_force(
     assert _estimate(rig, point) == pytest.approx(np.abs(forces).max(), rel=0.01)
 
 
+@pytest.mark.parametrize(("drift_deg", "turn_rate_rad_s"), [(20.0, 0.0), (-10.0, 0.0), (0.0, 0.2)])
+def test_a_slow_sway_at_drift_or_on_a_circle(drift_deg: float, turn_rate_rad_s: float) -> None:
+    """The mean and the first harmonic together; on a circle the simulator's turn is exact."""
+    rig, drift = horizontal_rig(), math.radians(drift_deg)
+    point = SetPoint(0.1, 0.05, 0.0, 1.2, drift_rad=drift, turn_rate_rad_s=turn_rate_rad_s)
+    data = simulate(rig.ideal(), point, periods=2, settling_periods=2, sample_rate_hz=100.0, seed=1)
+    forces = np.stack([data[name].to_numpy() for name in ("force_aft", "force_fore")])
+    assert _estimate(rig, point) == pytest.approx(np.abs(forces).max(), rel=0.01)
+
+
 def test_a_known_mass_adds_its_own_share() -> None:
     rig = vertical_rig()
     point = SetPoint(0.8, 0.02, medium=Medium.AIR)
