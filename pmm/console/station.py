@@ -112,15 +112,13 @@ class Station:
             if self._idle and (self.control.finished or self.control.state is State.IDLE):
                 self._follow(self._campaign)
             return
-        if not self.control.finished:
+        if not (self.control.finished or self.control.state is State.IDLE):
             return
-        if (
-            self._plans.present is not None
-            and not self._has_runs_left
-            and not self.control.planned.held_runs
-        ):
-            self._writer.let_go(self._plans.present.number)
-        if self._plans.ready:
+        present = self._plans.present
+        if present is not None and not self._has_runs_left and not self.control.planned.held_runs:
+            self._writer.let_go(present.number)
+        # Only the control that holds a fault can reset it: until then it stays.
+        if self._plans.ready and self.control.state is not State.FAULT:
             self._next_plan(goes_on=self.control.state is State.DONE)
 
     def _follow(self, campaign: ChoosingCampaign) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 import can
 import numpy as np
 
+from hardware.errors import HeartbeatLostError
 from hardware.pacing import FreeRunning
 from pmm.console.answers import BrowserAnswers
 from pmm.console.limits import MOST_WAITING
@@ -239,6 +240,57 @@ def test_a_plan_behind_a_stopped_one_waits_for_the_operator(tmp_path: Path) -> N
         assert one.order(OrderKind.COMMAND, "start").carried_out
         one.until(State.GATE_OPEN)
         assert one.station.control.status().run == "b"
+        one.quick_stop.press()
+        one.until(State.STOPPED)
+
+
+def test_a_fault_stays_until_its_reset_and_the_plan_behind_it_is_taken_then(
+    tmp_path: Path,
+) -> None:
+    with _shown(tmp_path) as one:
+        for _ in range(40):
+            one.station.step()
+        one.queue(1, "first", _short("a"))
+        one.queue(2, "second", _short("b"))
+        one.order(OrderKind.COMMAND, "start")
+        one.until(State.GATE_OPEN)
+        fault = HeartbeatLostError("shaft", "no heartbeat of node 1")
+        one.station.control.fail(fault)
+        for _ in range(1000):
+            one.station.step()
+        assert one.station.at_rest
+        assert one.queue(3, "third", _short("c")).carried_out
+        one.station.step()
+        assert one.station.control.state is State.FAULT
+        assert one.station.control.fault is fault
+        assert one.station._plans.number == 1
+        assert one.order(OrderKind.COMMAND, "reset").carried_out
+        assert not one.bench.rig.faults
+        for _ in range(300):
+            one.station.step()
+        assert one.station.control.state is State.IDLE  # nothing goes on by itself
+        assert one.station._plans.number == 2
+        assert one.order(OrderKind.COMMAND, "start").carried_out
+        one.until(State.GATE_OPEN)
+        assert one.station.control.status().run == "b"
+        one.quick_stop.press()
+        one.until(State.STOPPED)
+
+
+def test_a_fault_at_rest_stays_when_a_plan_is_queued_behind_it(tmp_path: Path) -> None:
+    with _shown(tmp_path) as one:
+        for _ in range(40):
+            one.station.step()
+        one.station.control.fail(HeartbeatLostError("shaft", "no heartbeat of node 1"))
+        for _ in range(300):
+            one.station.step()
+        one.queue(1, "first", _short("a"))
+        one.station.step()
+        assert one.station.control.state is State.FAULT
+        assert one.order(OrderKind.COMMAND, "reset").carried_out
+        one.station.step()
+        assert one.order(OrderKind.COMMAND, "start").carried_out
+        one.until(State.GATE_OPEN)
         one.quick_stop.press()
         one.until(State.STOPPED)
 
