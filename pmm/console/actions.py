@@ -1,5 +1,6 @@
 """What a browser may do: each action is checked, carried out, logged and answered."""
 
+import asyncio
 from collections.abc import Awaitable, Callable
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -16,8 +17,8 @@ from pmm.console.desk import Holder
 from pmm.console.encoding import encode_answer
 from pmm.console.hub import Hub
 from pmm.console.limits import LARGEST_PLAN, LARGEST_REQUEST, SILENT_S
-from pmm.console.loop_side import LoopSide, RefusedError
-from pmm.console.messages import OrderKind
+from pmm.console.loop_side import LoopSide, RefusedError, UnansweredError
+from pmm.console.messages import OrderKind, Reply
 from pmm.console.plans import Plans
 from pmm.console.proposals import PROPOSED, Proposals
 from pmm.console.queue_changes import ActionReply, QueueChanges, of_reply
@@ -73,6 +74,7 @@ class PageActions:
         self._hub, self._loop, self._workers, self._plans = hub, loop, workers, plans
         self._folder, self._utc = folder, utc
         self._proposals = Proposals()
+        self._late: asyncio.Future[None] | None = None
         self.changes = QueueChanges(
             hub, loop, workers, plans, self._proposals, QueueJournal(folder, plans.rig_path)
         )
@@ -157,6 +159,8 @@ class PageActions:
             status, answer = 403, {"error": str(error)}
         except RefusedError as error:
             status, answer, present = 409, {"error": str(error)}, error.present
+            if isinstance(error, UnansweredError):
+                error.then(lambda reply: self._log_late(who, action, text, reply))
         except PmmError as error:
             status, answer = 409, {"error": str(error)}
         if action != "check":
@@ -185,6 +189,12 @@ class PageActions:
             await run_sync(keep, folder or self.folder(), record)
         except OSError as error:
             self.alarm(f"commands are not logged: {error}")
+
+    def _log_late(self, who: Requester, action: str, text: str, reply: Reply) -> None:
+        """Keep what came of an order after whoever gave it was told that nobody answers."""
+        said, folder = {"said": f"answered late: {reply.text}"}, self.folder(reply.plan)
+        log = self.log(who, action, text, said, folder, taken=reply.carried_out)
+        self._late = asyncio.ensure_future(log)
 
     async def log_lapse(self, who: Requester) -> None:
         """Keep whose control has lapsed."""
@@ -220,6 +230,10 @@ class PageActions:
         proposal = self._proposals.take(posted.number)
         try:
             reply = await self.changes.carry_out(proposal.action, proposal.posted)
+        except UnansweredError as error:  # it may be carried out: it waits on if it was not
+            error.then(lambda reply: None if reply.carried_out else self.changes.wait_on(proposal))
+            self.changes.tell_proposals()
+            raise
         except BaseException:  # it waits on, whatever has happened
             self._proposals.waiting[proposal.number] = proposal
             raise

@@ -2,8 +2,10 @@
 
 import asyncio
 import threading
+import time
 from collections.abc import Callable
 from multiprocessing.connection import Connection
+from typing import Final
 
 from anyio.to_thread import run_sync
 
@@ -11,6 +13,8 @@ from hardware.description.errors import PmmError
 from pmm.console.messages import LoopMessage, LoopOrder, OrderKind, Reply
 from pmm.console.queued_plan import PackedPlan
 from pmm.console.quick_stop import PATIENCE_S, QuickStop
+
+_ANSWER_S: Final = 1.0  # 100 cycles: for the answer to what was begun at the last moment
 
 
 class RefusedError(PmmError):
@@ -25,6 +29,27 @@ class RefusedError(PmmError):
     def __init__(self, text: str, present: int | None = None) -> None:
         super().__init__(text)
         self.present = present
+
+
+class UnansweredError(RefusedError):
+    """The loop does not answer an order: it has begun it and is not done, or leaves it undone.
+
+    Parameters
+    ----------
+    later
+        Has the reply once it comes after all.
+    """
+
+    def __init__(self, later: asyncio.Future[Reply]) -> None:
+        super().__init__(
+            "the control loop does not answer; look at the rig. It has begun this, or leaves it "
+            "undone; what came of it is logged once it is known"
+        )
+        self._later = later
+
+    def then(self, settle: Callable[[Reply], object]) -> None:
+        """Have the reply taken in the event loop, if it comes."""
+        self._later.add_done_callback(lambda later: settle(later.result()))
 
 
 class LoopSide:
@@ -59,25 +84,31 @@ class LoopSide:
     async def order(
         self, kind: OrderKind, text: str = "", question: str = "", plan: PackedPlan | None = None
     ) -> Reply:
-        """Give an order; return what the loop says.
+        """Give an order, to be begun within 5 s; return what the loop says.
 
         Raises
         ------
         RefusedError
-            If it is refused, or the loop does not answer.
+            If it is refused, or the loop is gone.
+        UnansweredError
+            If the loop does not answer: whether it is carried out is known with the reply alone.
         """
         self._count += 1
-        order = LoopOrder(self._count, kind, text, question, plan, self._quick_stop.pressed)
+        until_s = time.monotonic() + PATIENCE_S
+        stops = self._quick_stop.pressed
+        order = LoopOrder(self._count, kind, text, question, plan, stops, until_s)
         future: asyncio.Future[Reply] = self._loop.create_future()
         self._open[order.number] = future
         try:
             async with self._sending:
                 await run_sync(self._connection.send, order)
-            reply = await asyncio.wait_for(future, PATIENCE_S)
-        except (OSError, TimeoutError) as error:
-            raise RefusedError("the control loop does not answer; look at the rig") from error
-        finally:
-            self._open.pop(order.number, None)
+        except OSError as error:
+            del self._open[order.number]
+            raise RefusedError("the control loop is gone; look at the rig") from error
+        await asyncio.wait((future,), timeout=until_s + _ANSWER_S - time.monotonic())
+        if not future.done():
+            raise UnansweredError(future)
+        reply = future.result()
         if not reply.carried_out:
             raise RefusedError(reply.text, reply.plan)
         return reply
@@ -94,9 +125,9 @@ class LoopSide:
         return "quick stop taken"
 
     def replied(self, reply: Reply) -> None:
-        """Hand a reply of the loop to whoever waits for it."""
-        future = self._open.get(reply.number)
-        if future is not None and not future.done():
+        """Hand a reply of the loop to whoever waits for it, or waited."""
+        future = self._open.pop(reply.number, None)
+        if future is not None:
             future.set_result(reply)
 
     def _receive(self) -> None:

@@ -10,6 +10,7 @@ from hardware.description.arrays import FloatArray
 from hardware.description.setpoint import SetPoint
 from pmm.console.queued_plan import PackedPlan, QueuedPlan
 from pmm.recorder.lateness import CycleStatistics
+from pmm.run.states import RunStateError
 from pmm.run.status import RunOutcome, RunStatus
 from pmm.sequential.look import Look
 
@@ -41,6 +42,9 @@ class LoopOrder:
     quick_stops
         How many quick stops there were when it was given: they go by a way of their own, and what
         is older than the last of them is not carried out any more.
+    until_s
+        Monotonic seconds, the same for all processes of the machine: what has not begun by then is
+        left undone, because whoever gave it was told that nobody answers.
     """
 
     number: int
@@ -49,6 +53,20 @@ class LoopOrder:
     question: str = ""
     plan: QueuedPlan | PackedPlan | None = None
     quick_stops: int = 0
+    until_s: float = math.inf
+
+    def require_current(self, quick_stops: int, now_s: float) -> None:
+        """Refuse what was overtaken by a quick stop, or is too old.
+
+        Raises
+        ------
+        RunStateError
+            If it is.
+        """
+        if self.quick_stops < quick_stops:
+            raise RunStateError("there was a quick stop after this; give it again if you mean it")
+        if now_s > self.until_s:
+            raise RunStateError("this came too late and was left undone; give it again")
 
     @property
     def queued(self) -> QueuedPlan:

@@ -4,20 +4,18 @@ Whoever changed something waits with the answer until it is on the disk.
 """
 
 import asyncio
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
-
-from anyio.to_thread import run_sync
 
 from hardware.description.errors import PmmError
 from pmm.console.encoding import EncodedText, encode_answer
 from pmm.console.hub import Hub
-from pmm.console.loop_side import LoopSide
+from pmm.console.loop_side import LoopSide, UnansweredError
 from pmm.console.messages import OrderKind, Reply
 from pmm.console.plans import Plans
-from pmm.console.proposals import Proposals
+from pmm.console.proposals import Proposals, ProposedChange
 from pmm.console.queue_journal import KeptPlan, KeptQueue, QueueJournal
+from pmm.console.queue_keeper import QueueKeeper
 from pmm.console.requests import DropPosted, HoldPosted, MovePosted, PlanPosted, Posted, RunPosted
 from pmm.console.worker_process import Workers
 from pmm.console.worker_tasks import (
@@ -30,7 +28,7 @@ from pmm.console.worker_tasks import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Awaitable
+    from collections.abc import Awaitable, Callable
 
 
 @dataclass(frozen=True)
@@ -136,14 +134,20 @@ class QueueChanges:
         try:
             plan = self.queued.plan(number)
             return await self._loop.order(OrderKind.QUEUE, str(frame), plan=plan)
+        except UnansweredError as error:  # the loop may have it
+            error.then(lambda reply: None if reply.carried_out else self._forget(number))
+            raise
         except PmmError:
             self.queued.drop(number)
             raise
 
+    def _forget(self, number: int) -> None:
+        self.queued.drop(number)
+        self._tell_plans()
+
     async def _drop(self, posted: DropPosted) -> ActionReply:
         reply = await self._loop.order(OrderKind.DROP, str(posted.number))
-        self.queued.drop(posted.number)
-        self._tell_plans()
+        self._forget(posted.number)
         return of_reply(reply)
 
     async def _move(self, posted: MovePosted) -> ActionReply:
@@ -160,10 +164,19 @@ class QueueChanges:
         async with self._changing:  # each change begins with what the one before has made
             before = self.queued.plan(posted.number)
             ready = await worker.run(changed_plan, self._plans, before, posted)
-            reply = await self._loop.order(OrderKind.CHANGE, plan=ready.packed)
-            self.queued.change(ready, posted)
-        self._tell_plans()
+            try:
+                reply = await self._loop.order(OrderKind.CHANGE, plan=ready.packed)
+            except UnansweredError as error:
+                error.then(
+                    lambda reply: self._keep_change(ready, posted) if reply.carried_out else None
+                )
+                raise
+            self._keep_change(ready, posted)
         return of_reply(reply, ready.picture)
+
+    def _keep_change(self, ready: ReadyPlan, posted: RunPosted) -> None:
+        self.queued.change(ready, posted)
+        self._tell_plans()
 
     def follow_frame(self, frame: int, numbers: tuple[int, ...]) -> None:
         """Take the order of the queue as the latest frame tells it."""
@@ -212,6 +225,11 @@ class QueueChanges:
         self._hub.tell_proposals(self._proposals.pictures())
         self._keeper.note_change()
 
+    def wait_on(self, proposal: ProposedChange) -> None:
+        """Have a proposal wait again that was approved and, as is known by now, not carried out."""
+        self._proposals.waiting[proposal.number] = proposal
+        self.tell_proposals()
+
     def _tell_plans(self) -> None:
         last = self._hub.last
         if last is not None:
@@ -221,53 +239,3 @@ class QueueChanges:
 
     def _queue_state(self) -> KeptQueue:
         return KeptQueue(self.queued.kept_plans(), tuple(self._proposals.waiting.values()))
-
-
-class QueueKeeper:
-    """Keeps the journal up to date from :meth:`begin` on: before it, what is kept is not all known.
-
-    Parameters
-    ----------
-    state
-        Returns what is to be kept.
-    alarm
-        Told why it cannot be written.
-    """
-
-    def __init__(
-        self, journal: QueueJournal, state: Callable[[], KeptQueue], alarm: Callable[[str], None]
-    ) -> None:
-        self._journal, self._state, self._alarm = journal, state, alarm
-        self._begun = self._again = False
-        self._task: asyncio.Task[None] | None = None
-        self._trouble = ""
-
-    def read(self) -> KeptQueue:
-        """Return what is kept; raises ConfigurationError as the journal does."""
-        return self._journal.read()
-
-    def begin(self) -> None:
-        """Keep the present state, and each that follows."""
-        self._begun = True
-        self.note_change()
-
-    def note_change(self) -> None:
-        """Note that there is something to keep."""
-        self._again = self._begun
-        if self._begun and (self._task is None or self._task.done()):
-            self._task = asyncio.get_running_loop().create_task(self._write())
-
-    async def wait_written(self) -> str:
-        """Wait until what was changed so far is on the disk; return why it is not, if it is not."""
-        if self._task is not None:
-            await asyncio.wait([self._task])
-        return self._trouble
-
-    async def _write(self) -> None:
-        while self._again:
-            self._again, self._trouble = False, ""
-            try:
-                await run_sync(self._journal.write, self._state())
-            except OSError as error:
-                self._trouble = f"the queue is not kept: {error}"
-                self._alarm(self._trouble)

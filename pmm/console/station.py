@@ -40,7 +40,7 @@ class Station:
     Parameters
     ----------
     clock
-        Monotonic seconds: for frames and flushing.
+        Monotonic seconds: for frames, flushing and the age of orders.
     utc
         Date and time in ISO 8601.
     provenance
@@ -175,8 +175,7 @@ class Station:
         return Reply(order.number, carried_out, text, self._plans.number, self._view.next_frame)
 
     def _obey(self, order: LoopOrder) -> str:
-        if order.quick_stops < self._quick_stop.pressed:
-            raise RunStateError("there was a quick stop after this; give it again if you mean it")
+        order.require_current(self._quick_stop.pressed, self._clock())
         return {
             OrderKind.COMMAND: lambda: self._command(Command(order.text)),
             OrderKind.ANSWER: lambda: self._answer(order),

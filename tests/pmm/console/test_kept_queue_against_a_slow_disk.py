@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from pmm.console.queue_changes import QueueKeeper
 from pmm.console.queue_journal import KeptPlan, KeptQueue, QueueJournal
+from pmm.console.queue_keeper import QueueKeeper
 
 
 class SlowJournal(QueueJournal):

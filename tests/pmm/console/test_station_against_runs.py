@@ -356,6 +356,24 @@ def test_what_was_ordered_before_a_quick_stop_does_not_move_the_rig_after_it(
         one.until(State.STOPPED)
 
 
+def test_what_comes_later_than_it_may_be_begun_is_left_undone_and_answered(
+    tmp_path: Path,
+) -> None:
+    with _shown(tmp_path) as one:
+        one.queue(1, "plan", _short("a"))
+        now_s = one.bench.world.time_s
+        for number, until_s in ((8, now_s - 0.5), (9, now_s + 0.5)):
+            order = LoopOrder(number, OrderKind.COMMAND, "start", until_s=until_s)
+            one.heard.waiting.append(order)
+            one.station.step()
+            reply = next(o for o in one.heard.told if isinstance(o, Reply) and o.number == number)
+            assert reply.carried_out is (number == 9)
+            assert ("too late" in reply.text) is (number == 8)
+            assert (one.station.control.state is State.IDLE) is (number == 8)
+        one.quick_stop.press()
+        one.until(State.STOPPED)
+
+
 def test_runs_that_are_held_are_passed_over_and_released_at_rest_wait_for_start(
     tmp_path: Path,
 ) -> None:
