@@ -199,6 +199,7 @@ def _configuration(page: "Guard", certificate: Path | None, key: Path | None) ->
         log_level="warning",
         access_log=False,
         server_header=False,
+        proxy_headers=False,  # who asks is whoever is connected, not whom a header names
         timeout_graceful_shutdown=2,
         ssl_certfile=certificate,
         ssl_keyfile=key,

@@ -1,16 +1,24 @@
 """Wrong tokens: counted by address, slower each time, and no page that is logged in is touched."""
 
 import json
+import socket
+import threading
+from http.client import HTTPConnection
 from pathlib import Path
+from typing import cast
 
 import pytest
+import uvicorn
 from hypothesis import given
 from hypothesis import strategies as st
+from starlette.types import Receive, Scope, Send
 
 from pmm.console import lockout
 from pmm.console.audit import COMMANDS
 from pmm.console.limits import LONGEST_LOCKOUT_S, MOST_ADDRESSES, WRONG_TOKENS
 from pmm.console.lockout import Lockout
+from pmm.console.security import Guard
+from pmm.console.session import _configuration
 from tests.pmm.console.chromium import console, rig_in
 from tests.pmm.console.raw import address_of
 from tests.pmm.console.serving import served
@@ -82,6 +90,28 @@ def test_a_page_that_is_logged_in_stops_quickly_while_its_address_is_shut_out(
     assert wrong[-1]["said"] == f"wrong token, number {WRONG_TOKENS} from 127.0.0.1; it waits 800 s"
     assert {line["address"] for line in wrong} == {"127.0.0.1"}
     assert TOKEN not in text
+
+
+def test_the_address_is_that_of_the_connection_whatever_a_header_says() -> None:
+    async def page(scope: Scope, _: Receive, send: Send) -> None:
+        if scope["type"] == "http":
+            await send({"type": "http.response.start", "status": 200, "headers": []})
+            await send({"type": "http.response.body", "body": scope["client"][0].encode()})
+
+    listening = socket.create_server(("127.0.0.1", 0))
+    server = uvicorn.Server(_configuration(cast("Guard", page), None, None))
+    thread = threading.Thread(target=server.run, args=([listening],))
+    thread.start()
+    try:
+        asker = HTTPConnection(*listening.getsockname(), timeout=60.0)
+        headers = {"x-forwarded-for": "192.168.1.7", "x-forwarded-proto": "https"}
+        asker.request("GET", "/", headers=headers)
+        assert asker.getresponse().read() == b"127.0.0.1"
+        asker.close()
+    finally:
+        server.should_exit = True
+        thread.join(60.0)
+        listening.close()
 
 
 @pytest.mark.slow
