@@ -5,7 +5,7 @@ import socket
 import threading
 from http.client import HTTPConnection
 from pathlib import Path
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 import pytest
 import uvicorn
@@ -17,11 +17,13 @@ from pmm.console import lockout
 from pmm.console.audit import COMMANDS
 from pmm.console.limits import LONGEST_LOCKOUT_S, MOST_ADDRESSES, WRONG_TOKENS
 from pmm.console.lockout import Lockout
-from pmm.console.security import Guard
 from pmm.console.session import _configuration
 from tests.pmm.console.chromium import console, rig_in
 from tests.pmm.console.raw import address_of
 from tests.pmm.console.serving import served
+
+if TYPE_CHECKING:
+    from pmm.console.security import Guard
 
 TOKEN = "a token of more than sixteen"  # noqa: S105 - the test's own
 
