@@ -1,4 +1,4 @@
-"""Makes a lost journal of samples again out of the raw log, which holds all that it held."""
+"""Makes lost journals of samples and pulses again out of the raw log, which holds all of them."""
 
 import os
 from collections.abc import Iterable, Sequence
@@ -10,25 +10,32 @@ import numpy as np
 from hardware.description.arrays import FloatArray
 from hardware.description.errors import DataError
 from hardware.description.flags import Flag, Severity
+from hardware.roles import Pulse
 from pmm.recorder.decoding import decode
 from pmm.recorder.disk import DiskFullError, free_bytes
 from pmm.recorder.files import BUS, LINES, PULSES, SAMPLES, set_aside
 from pmm.recorder.line_shapes import as_line
 from pmm.recorder.live_path import CycleSamples, joined_samples
+from pmm.recorder.pulse_comparison import compare_pulses, united_pulses
 from pmm.recorder.recording import RunData, marker_is_whole
 from pmm.recorder.samples import SampleWriter
 from pmm.whole_file import write_whole
 
 
 def rebuild(
-    run: RunData, drivers: Iterable[EntryPoint] | None = None
-) -> tuple[Flag, tuple[str, ...]]:
+    run: RunData, drivers: Iterable[EntryPoint] | None = None, *, samples: bool = True
+) -> tuple[tuple[Flag, ...], tuple[str, ...]]:
     """Write ``samples.arrows`` from the raw log, and ``pulses.jsonl`` where that is lost as well.
 
-    The samples are decoded by the same code as in the run, so they are the same bit by bit; those
-    that are whole stay. The bytes of a damaged ``samples.arrows`` are kept under another name.
+    They are decoded by the same code as in the run, so they are the same bit by bit; those that are
+    whole stay. The bytes of a damaged file are kept under another name.
 
     It returns what was done, and the names of the files that were made.
+
+    Parameters
+    ----------
+    samples
+        Whether ``samples.arrows`` has lost any.
 
     Raises
     ------
@@ -42,18 +49,38 @@ def rebuild(
     try:
         taken, _ = decode(run, drivers)
     except DataError as error:
-        words = "lost samples" if run.samples else "no whole sample, and none"
+        words = "lost samples or pulses" if run.samples else "no whole sample, and none"
         raise DataError(f"{run.folder}: holds {words} can be decoded: {error}") from error
-    first, values = _with_whole(run, run.header.first_sync, _samples(run, taken))
-    _check_room(run.folder, values)
-    set_aside(run.folder / SAMPLES)
-    _write_samples(run, first, values)
-    lost = [SAMPLES]
+    lost: dict[str, str] = {}
+    if samples:
+        first, values = _with_whole(run, run.header.first_sync, _samples(run, taken))
+        _check_room(run.folder, values)
+        set_aside(run.folder / SAMPLES)
+        _write_samples(run, first, values)
+        lost[SAMPLES] = "samples_rebuilt"
+    pulses = [pulse for each in taken for pulse in each.pulses]
+    if _has_lost_pulses(run, pulses, len(taken)):
+        set_aside(run.folder / PULSES)
+        rows = united_pulses(run.texts[PULSES], pulses)
+        write_whole(run.folder / PULSES, "".join(as_line(row).decode() for row in rows))
+        lost[PULSES] = "pulses_rebuilt"
+    flags = (
+        Flag(
+            code,
+            Severity.WARNING,
+            f"what {name} had lost is decoded again from the raw log ({BUS})",
+        )
+        for name, code in lost.items()
+    )
+    return tuple(flags), tuple(lost)
+
+
+def _has_lost_pulses(run: RunData, pulses: Sequence[Pulse], cycles: int) -> bool:
+    """Tell whether the journal lacks pulses; that of a run that was closed is its marker's."""
     if not (run.folder / PULSES).exists():
-        _write_pulses(run.folder, taken)
-        lost.append(PULSES)
-    message = f"what {' and '.join(lost)} had lost is decoded again from the raw log ({BUS})"
-    return Flag("samples_rebuilt", Severity.WARNING, message), tuple(lost)
+        return True
+    end_s = (run.header.first_sync + cycles - 1) / run.header.sample_rate_hz
+    return run.marker is None and not compare_pulses(run.texts[PULSES], pulses, end_s).same
 
 
 def _check_room(folder: Path, values: FloatArray) -> None:
@@ -103,11 +130,3 @@ def _write_samples(run: RunData, first: int, values: FloatArray) -> None:
         file.flush()
         os.fsync(file.fileno())
     part.replace(run.folder / SAMPLES)
-
-
-def _write_pulses(folder: Path, taken: Sequence[CycleSamples]) -> None:
-    lines = []
-    for pulse in (pulse for each in taken for pulse in each.pulses):
-        angle = None if np.isnan(pulse.shaft_angle_rad) else pulse.shaft_angle_rad
-        lines.append(as_line([pulse.number, pulse.time_s, angle]).decode())
-    write_whole(folder / PULSES, "".join(lines))

@@ -18,6 +18,7 @@ from pmm.recorder.files import (
     BUS,
     HEADER,
     MARKER,
+    PULSES,
     RECORDING,
     RECOVERED,
     SAMPLES,
@@ -28,6 +29,7 @@ from pmm.recorder.files import (
 )
 from pmm.recorder.journal_reconstruction import rebuild
 from pmm.recorder.line_shapes import read_recovered
+from pmm.recorder.pulse_comparison import doubtful_pulses
 from pmm.recorder.recording import RunData, convert, read_run
 from pmm.recorder.samples import SampleWriter, counts
 from pmm.whole_file import write_whole
@@ -138,8 +140,9 @@ def recover(folder: Path, drivers: Iterable[EntryPoint] | None = None) -> Recove
         _check_written(run)
         damage = changed.pop(RECORDING, None)
         flags, made = (*_torn(run, log), *change_flags(changed)), files_recovered(folder)
-        if _has_lost(run):
-            run, flags, made = _rebuilt(run, flags, made, drivers)
+        doubt = doubtful_pulses(run)
+        if _has_lost(run) or doubt:
+            run, flags, made = _rebuilt(run, flags, made, drivers, doubt)
         if not is_recorded:
             set_aside(folder / RECORDING)
             convert(run, flags)
@@ -164,17 +167,25 @@ def _rebuilt(
     flags: tuple[Flag, ...],
     made: Mapping[str, Any],
     drivers: Iterable[EntryPoint] | None,
+    doubt: str,
 ) -> tuple[RunData, tuple[Flag, ...], dict[str, Any]]:
     """Decode what was lost from the raw log; where that cannot be, what is whole has to do."""
+    is_short = _has_lost(run)
     try:
-        flag, names = rebuild(run, drivers)
+        made_flags, names = rebuild(run, drivers, samples=is_short)
     except PmmError as error:
         if run.samples is None or isinstance(error, DiskFullError):
             raise
-        text = f"what {SAMPLES} has lost cannot be decoded again: {error}"
-        return run, (*flags, Flag("samples_lost", Severity.WARNING, text)), dict(made)
+        losses = {"samples_lost": f"what {SAMPLES} has lost"} if is_short else {}
+        if doubt and run.texts[PULSES]:  # without any, nothing tells whether there were some
+            losses["pulses_lost"] = f"pulses that {PULSES} may have lost ({doubt})"
+        lost = (
+            Flag(code, Severity.WARNING, f"{words} cannot be decoded again: {error}")
+            for code, words in losses.items()
+        )
+        return run, (*flags, *lost), dict(made)
     contents = {name: contents_of(run.folder / name) for name in names}
-    return read_run(run.folder), (*flags, flag), {**made, **contents}
+    return read_run(run.folder), (*flags, *made_flags), {**made, **contents}
 
 
 def _torn(run: RunData, log: LogState) -> tuple[Flag, ...]:

@@ -16,8 +16,9 @@ from hardware.roles import Pulse
 from pmm.recorder.campaign_owner import writer_of
 from pmm.recorder.decoding import decode
 from pmm.recorder.file_changes import changed_files
-from pmm.recorder.files import EVENTS, HARMONICS
+from pmm.recorder.files import EVENTS, HARMONICS, PULSES
 from pmm.recorder.live_path import CycleSamples, GateResolver, as_record, joined_samples
+from pmm.recorder.pulse_comparison import PulseComparison, compare_pulses
 from pmm.recorder.recording import RunData, read_run
 from pmm.recorder.samples import JournalSamples
 
@@ -42,6 +43,8 @@ class Replay:
         Values that are not the same bit by bit, a NaN being the same as a NaN.
     pulses, recorded_pulses_s
         Pulses of the replay, and their times in the journal.
+    pulse_comparison
+        What the journal's pulses are beside those of the replay.
     readings, recorded_readings
         Final readings of the resolver, as the journal keeps them; ``None`` where a recorded one
         did not come again.
@@ -58,6 +61,7 @@ class Replay:
     differing_samples: int
     pulses: tuple[Pulse, ...]
     recorded_pulses_s: FloatArray
+    pulse_comparison: PulseComparison
     readings: tuple[Mapping[str, Any] | None, ...]
     recorded_readings: tuple[Mapping[str, Any], ...]
     difference: float
@@ -70,10 +74,9 @@ class Replay:
 
         A resolver that got its samples in other blocks rounds its sums in another way.
         """
-        times = [pulse.time_s for pulse in self.pulses[: len(self.recorded_pulses_s)]]
         return (
             self.differing_samples == 0
-            and times == self.recorded_pulses_s.tolist()
+            and self.pulse_comparison.same
             and self.difference <= SAME_READING
         )
 
@@ -113,12 +116,15 @@ def _compare(
     replayed[:, : decoded.shape[1]] = decoded
     differing = ~((replayed == recorded) | (np.isnan(replayed) & np.isnan(recorded)))
     records, again_read = tuple(run.texts[HARMONICS]), resolve_again(run, taken)
+    pulses = tuple(pulse for each in taken for pulse in each.pulses)
+    end_s = (run.header.first_sync + len(taken) - 1) / run.header.sample_rate_hz
     return Replay(
         replayed,
         recorded,
         int(np.sum(differing)),
-        tuple(pulse for each in taken for pulse in each.pulses),
+        pulses,
         run.pulses_s,
+        compare_pulses(run.texts[PULSES], pulses, end_s),
         again_read,
         records,
         largest_difference(records, again_read),

@@ -93,12 +93,22 @@ def recovery_document(recoveries: Sequence[Recovery]) -> Document:
     return Document("", "recovered runs", (first, *flagged), "")
 
 
+def _pulses_in_words(replay: Replay) -> str:
+    found = replay.pulse_comparison
+    words = f"{len(replay.recorded_pulses_s)} recorded, {len(replay.pulses)} again"
+    if found.differing:
+        words += f", {found.differing} differ"
+    if found.missing:
+        words += f", {len(found.missing)} not recorded, from {found.missing[0].time_s:.2f} s on"
+    return words
+
+
 def replay_document(replay: Replay) -> Document:
     """Return how far a replay gives what its run had written."""
     count, reading_count = replay.recorded.shape[1], len(replay.recorded_readings)
     counts = {
         "samples": f"{count}, {replay.differing_samples} values differ",
-        "pulses": f"{len(replay.recorded_pulses_s)} recorded, {len(replay.pulses)} again",
+        "pulses": _pulses_in_words(replay),
         "readings": f"{reading_count} recorded, largest difference {replay.difference:.2g}",
     }
     contents: tuple[Content, ...] = (
@@ -110,6 +120,8 @@ def replay_document(replay: Replay) -> Document:
         Data("differing_values", replay.differing_samples),
         Data("pulses", len(replay.pulses)),
         Data("recorded_pulses", len(replay.recorded_pulses_s)),
+        Data("missing_pulses_s", [pulse.time_s for pulse in replay.pulse_comparison.missing]),
+        Data("differing_pulses", replay.pulse_comparison.differing),
         Data("readings", [reading and reading["coefficients"] for reading in replay.readings]),
         Data(
             "recorded_readings",

@@ -33,6 +33,74 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return place
 
 
+CHANGES = {  # of ten pulses, 1 s apart: what is left of them, how many are missing, and differ
+    "whole": (lambda lines: lines, 0, 0),
+    "the last, in flight": (lambda lines: lines[:-1], 0, 0),
+    "the last four": (lambda lines: lines[:-4], 3, 0),  # the last of them was in flight
+    "the fifth": (lambda lines: lines[:4] + lines[5:], 1, 0),
+    "the first three": (lambda lines: lines[3:], 3, 0),
+    "all": (lambda _: [], 9, 0),
+    "an angle": (lambda lines: [*lines[:4], _turned(lines[4]), *lines[5:]], 0, 1),
+    "a line twice": (lambda lines: [*lines[:5], *lines[4:]], 0, 6),
+}
+
+
+def _turned(line: str) -> str:
+    number, time_s, _ = json.loads(line)
+    return json.dumps([number, time_s, 1.0], separators=(",", ":")) + "\n"
+
+
+@pytest.fixture(scope="module")
+def pulsed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run of ten turns that was not closed."""
+    folder = tmp_path_factory.mktemp("pulsed") / "run"
+    with session() as rig:
+        recorder, _ = rig.record(folder, 1000, TWO)
+        with recorder:
+            pass
+    return folder
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("change", CHANGES)
+def test_pulses_that_were_lost_are_named_and_come_back(
+    pulsed: Path, tmp_path: Path, change: str
+) -> None:
+    change_lines, missing, differing = CHANGES[change]
+    folder = tmp_path / "run"
+    shutil.copytree(pulsed, folder)
+    path = folder / "pulses.jsonl"
+    lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
+    assert len(lines) == 10
+    path.write_text("".join(change_lines(lines)), encoding="utf-8")
+    again = replay(folder, DRIVERS)
+    found = again.pulse_comparison
+    assert (len(found.missing), found.differing) == (missing, differing)
+    assert again.same is not bool(missing or differing)
+    codes = [flag.code for flag in recover(folder, DRIVERS).flags]
+    is_seen = bool(missing) or change == "a line twice"  # a line of text has no checksum
+    assert codes == ["recovered", "pulses_rebuilt"][: 1 + is_seen]
+    if is_seen:
+        assert path.read_text(encoding="utf-8") == "".join(lines)
+        assert (folder / "pulses.jsonl.damaged-1").exists()
+        assert replay(folder, DRIVERS).same
+        assert recover(folder, DRIVERS).changed == ()
+
+
+@pytest.mark.slow
+def test_lost_pulses_that_cannot_be_decoded_are_named(pulsed: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "run"
+    shutil.copytree(pulsed, folder)
+    (folder / "bus.blf").unlink()
+    path = folder / "pulses.jsonl"
+    lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
+    path.write_text("".join(lines[:4] + lines[5:]), encoding="utf-8")
+    flag = recover(folder, DRIVERS).flags[-1]
+    before, after = (json.loads(lines[k])[0] for k in (3, 5))
+    assert flag.code == "pulses_lost"
+    assert f"number {after} follows number {before}" in flag.message
+
+
 def lost(run: Path, place: Path, *names: str) -> Path:
     """Copy a run without some of its files."""
     folder = place / run.name
