@@ -6,7 +6,6 @@ drops what nobody fetches.
 
 from collections.abc import Callable
 from concurrent.futures import Executor
-from typing import Final
 
 from hardware.description.errors import PmmError
 from hardware.errors import as_fault
@@ -30,8 +29,6 @@ from pmm.run.measurement import Measurement
 from pmm.run.recorder_factory import RecorderFactory, plan_provenance
 from pmm.run.run_control import RunControl
 from pmm.run.states import Command, RunStateError, State
-
-_READY: Final = frozenset({State.IDLE, State.STOPPED, State.DONE})
 
 
 class Station:
@@ -109,10 +106,10 @@ class Station:
 
     def _go_on(self) -> None:
         if self._campaign is not None:
-            if self._idle and (self.control.finished or self.control.state is State.IDLE):
+            if self._idle:
                 self._follow(self._campaign)
             return
-        if not (self.control.finished or self.control.state is State.IDLE):
+        if not self.at_rest:
             return
         present = self._plans.present
         if present is not None and not self._has_runs_left and not self.control.planned.held_runs:
@@ -159,8 +156,8 @@ class Station:
 
     @property
     def at_rest(self) -> bool:
-        """Whether nothing is under way."""
-        return self._idle or (self.control.state is State.FAULT and self.control.finished)
+        """Whether nothing is under way; what was recorded is complete, and told."""
+        return self.control.state is State.IDLE or self.control.finished
 
     @property
     def deserted(self) -> bool:
@@ -235,7 +232,9 @@ class Station:
     def _drop(self, number: int) -> str:
         if self._plans.present is not None and number == self._plans.present.number:
             if not self._idle:
-                raise RunStateError(f"{self._plans.present.plan.name} is under way; stop it first")
+                is_closing = self.control.state in (State.STOPPED, State.DONE)
+                first = "its recording is being completed" if is_closing else "stop it first"
+                raise RunStateError(f"{self._plans.present.plan.name} is under way; {first}")
             self._end_campaign("left")
             name, self._plans.present = self._plans.present.plan.name, None
             self._writer.let_go(number)
@@ -248,7 +247,8 @@ class Station:
 
     @property
     def _idle(self) -> bool:
-        return self.control.state in _READY and self.control.measurement is None
+        """Whether it rests and no fault is latched: other runs may be taken."""
+        return self.at_rest and self.control.state is not State.FAULT
 
     @property
     def _has_runs_left(self) -> bool:

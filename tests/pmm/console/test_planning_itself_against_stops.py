@@ -89,6 +89,8 @@ def test_taken_out_it_leaves_the_rig_and_its_folder_as_they_are(shown: Shown) ->
     refused = shown.order(OrderKind.DROP, "1")
     assert refused.text == "heave-pitch is under way; stop it first"
     _stop(shown)
+    while not shown.station.at_rest:
+        shown.station.step()
     before = _settings(shown)
     assert shown.order(OrderKind.DROP, "1").text == "heave-pitch is taken out"
     for _ in range(50):

@@ -1,6 +1,9 @@
 """The rig's side of the console without a browser: plans in a row, frames, orders and refusals."""
 
+import threading
+import tomllib
 from collections.abc import Iterator
+from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from itertools import count, pairwise
@@ -90,7 +93,7 @@ class Shown:
 
 
 @contextmanager
-def _shown(folder: Path) -> Iterator[Shown]:
+def _shown(folder: Path, executor: Executor | None = None) -> Iterator[Shown]:
     with bench(folder, [], start=False) as one:
         heard, quick_stop = Heard(), QuickStop()
         station = Station(
@@ -104,6 +107,7 @@ def _shown(folder: Path) -> Iterator[Shown]:
             lambda: one.world.time_s,
             lambda: "2026-01-01T00:00:00+00:00",
             {},
+            executor,
         )
         yield Shown(station, heard, one, quick_stop)
 
@@ -227,6 +231,30 @@ def test_a_plan_that_is_queued_when_all_is_done_moves_nothing_before_start(tmp_p
         one.until(State.STOPPED)
 
 
+def test_it_is_at_rest_once_the_stopped_runs_recording_is_complete(tmp_path: Path) -> None:
+    let = threading.Event()
+    with ThreadPoolExecutor(1) as executor, _shown(tmp_path, executor) as one:
+        one.queue(1, "first", _short("a"))
+        one.order(OrderKind.COMMAND, "start")
+        one.until(State.GATE_OPEN, within=10**6)
+        executor.submit(let.wait)  # a slow disk
+        assert one.order(OrderKind.COMMAND, "stop").carried_out
+        one.until(State.STOPPED)
+        for _ in range(200):
+            one.station.step()
+        assert not one.station.at_rest
+        assert one.queue(2, "second", _short("b")).carried_out
+        assert "recording is being completed" in one.order(OrderKind.DROP, "1").text
+        assert one.station._plans.number == 1
+        let.set()
+        while not one.station.at_rest:
+            one.station.step()
+        assert one.station.close() == []
+        assert one.heard.notices("outcome") == ["a, stopped"]
+        content = tomllib.loads((tmp_path / "first" / "campaign.toml").read_text("utf-8"))
+        assert [run["file"] for run in content["runs"]] == ["a/run.nc"]
+
+
 def test_a_plan_behind_a_stopped_one_waits_for_the_operator(tmp_path: Path) -> None:
     with _shown(tmp_path) as one:
         one.queue(1, "first", _short("a"))
@@ -316,6 +344,7 @@ def test_orders_that_make_no_sense_are_refused_and_change_nothing(tmp_path: Path
         assert one.order(OrderKind.DROP, "3").carried_out
         one.quick_stop.press()
         one.until(State.STOPPED)
+        one.station.step()  # in which it is heard that the recording is closed
         assert one.order(OrderKind.DROP, "2").carried_out
         assert not one.order(OrderKind.COMMAND, "start").carried_out
 
