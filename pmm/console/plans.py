@@ -22,6 +22,7 @@ from pmm.plan.plan import Plan, read_plan_and_rig
 from pmm.plan.rig_file import RigFile, read_rig_file
 from pmm.plan.run_changes import edited, moved
 from pmm.plan.run_plan import RunPlan
+from pmm.recorder.files import sha256
 from pmm.run.campaign_folder import check_names, chosen_runs, folder_of
 
 _SHOWN = 60  # characters of a name that is no rig's
@@ -220,7 +221,8 @@ class Plans:
         if self.output is not None:
             folder = self.output / file.name
         check_design(file)  # refuses what has no end
-        plan = Plan(file.name, path, file.rig_path, (), file.plan_table.get("operator", ""), "")
+        operator = file.plan_table.get("operator", "")
+        plan = Plan(file.name, path, file.rig_path, (), operator, sha256(path))
         return CheckedPlan(QueuedPlan(0, plan, folder, (), chooses=True), file.rig, (), ())
 
 

@@ -14,9 +14,14 @@ from hardware.description.errors import ConfigurationError
 from pmm.console.proposals import PROPOSED, ProposedChange
 from pmm.console.requests import RunPosted
 from pmm.console.security import Visitor, VisitorRole
+from pmm.recorder.files import free_name
 from pmm.whole_file import write_whole
 
 _SCHEMA: Final = "pmm-console-queue-1"
+# Whatever a file that is none of ours may lead to.
+_UNREADABLE: Final = (
+    OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError,
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -25,18 +30,22 @@ class KeptPlan:
 
     Attributes
     ----------
+    sha256
+        Of its file, as it was when it was queued.
     changes
         In their order: edits, moves and holds of its runs.
     """
 
     number: int
     name: str
+    sha256: str
     changes: tuple[RunPosted, ...] = ()
 
     def record(self) -> dict[str, Any]:
         """Return the plan, and what was changed in it, as the journal keeps it."""
         changes = [{"action": _action(change), **change.model_dump()} for change in self.changes]
-        return {"number": self.number, "plan": self.name, "changes": changes}
+        named = {"number": self.number, "plan": self.name, "sha256": self.sha256}
+        return {**named, "changes": changes}
 
 
 @dataclass(frozen=True)
@@ -54,6 +63,7 @@ class QueueJournal:
         self._rig = str(rig.resolve())
         digest = hashlib.sha256(self._rig.encode()).hexdigest()[:8]
         self.path = folder / f"queue-{digest}.json"
+        self._unread = ""
 
     def write(self, queue: KeptQueue) -> None:
         """Replace what is kept.
@@ -61,8 +71,10 @@ class QueueJournal:
         Raises
         ------
         OSError
-            If it cannot be written.
+            If it cannot be written, or what is there could be neither read nor moved away.
         """
+        if self._unread:
+            raise OSError(self._unread)
         content = {
             "schema": _SCHEMA,
             "rig": self._rig,
@@ -78,17 +90,28 @@ class QueueJournal:
         Raises
         ------
         ConfigurationError
-            If the file is none of ours.
+            If the file is none of ours; it has another name then, so that none replaces it.
         """
         if not self.path.exists():
             return KeptQueue()
         try:
             content = json.loads(self.path.read_text(encoding="utf-8"))
             return _queue(content)
-        except (OSError, ValueError, KeyError, TypeError) as error:
+        except _UNREADABLE as error:
             raise ConfigurationError(
-                f"{self.path}: not the queue of a console ({error}); queue the plans anew"
+                f"{self.path}: not the queue of a console ({error}); {self._set_aside()}; queue "
+                "the plans anew"
             ) from error
+
+    def _set_aside(self) -> str:
+        """Give the file another name; say which."""
+        aside = free_name(self.path, "unread-")
+        try:
+            self.path.rename(aside)
+        except OSError as error:
+            self._unread = f"{self.path} cannot be read, and not be moved away either: {error}"
+            return self._unread
+        return f"it is kept as {aside.name}"
 
 
 def _queue(content: dict[str, Any]) -> KeptQueue:
@@ -103,7 +126,8 @@ def _action(posted: RunPosted) -> str:
 
 
 def _plan(record: dict[str, Any]) -> KeptPlan:
-    return KeptPlan(record["number"], record["plan"], tuple(map(_change, record["changes"])))
+    changes = tuple(map(_change, record["changes"]))
+    return KeptPlan(record["number"], record["plan"], record["sha256"], changes)
 
 
 def _change(record: dict[str, Any]) -> RunPosted:

@@ -51,9 +51,14 @@ def restored_plan(plans: Plans, plan: KeptPlan) -> ReadyPlan | None:
     Raises
     ------
     ConfigurationError, PlanRefusedError
-        If its file is wrong by now, or the rig cannot run it any more.
+        If its file is another one or wrong by now, or the rig cannot run it any more.
     """
     checked = plans.queue(plan.name, "")
+    if checked.waiting.plan.sha256 != plan.sha256:
+        raise ConfigurationError(
+            f"{checked.waiting.plan.path}: is not the file that was queued; look at what was "
+            "changed, then queue it anew"
+        )
     for change in plan.changes:
         checked = plans.changed(checked.waiting, change)
     waiting = checked.waiting
@@ -130,10 +135,12 @@ class QueuedPlans:
         """Return what is to be queued again after a restart, in the order of the queue."""
         later = [number for number in self._plans if number not in self._order]
         return tuple(
-            KeptPlan(number, self._plans[number].packed.bare.plan.path.name, self._changes[number])
-            for number in (*self._order, *later)
-            if number in self._plans
+            self._kept_plan(number) for number in (*self._order, *later) if number in self._plans
         )
+
+    def _kept_plan(self, number: int) -> KeptPlan:
+        plan = self._plans[number].packed.bare.plan
+        return KeptPlan(number, plan.path.name, plan.sha256, self._changes[number])
 
     def drop(self, number: int) -> None:
         """Forget a plan that was refused or taken out of the queue."""

@@ -38,7 +38,7 @@ def test_who_changed_it_waits_and_nobody_else(tmp_path: Path) -> None:
     journal, names = SlowJournal(tmp_path), list[str]()
 
     def state() -> KeptQueue:
-        return KeptQueue(tuple(KeptPlan(k, name) for k, name in enumerate(names, 1)))
+        return KeptQueue(tuple(KeptPlan(k, name, "") for k, name in enumerate(names, 1)))
 
     async def changes() -> None:
         keeper = QueueKeeper(journal, state, pytest.fail)

@@ -1,5 +1,6 @@
 """The queue after a console that was killed: the plans, their changes, order and proposals."""
 
+import hashlib
 import json
 import os
 import signal
@@ -12,20 +13,23 @@ import pytest
 
 import pmm
 from hardware.description.errors import ConfigurationError
+from pmm.console.plans import Plans
 from pmm.console.proposals import ProposedChange
 from pmm.console.queue_journal import KeptPlan, KeptQueue, QueueJournal
 from pmm.console.requests import EditPosted, HoldPosted, MovePosted, PlanPosted
 from pmm.console.security import Visitor, VisitorRole
+from pmm.console.worker_tasks import QueuedPlans, ready_plan, restored_plan
+from pmm.plan.rig_file import read_rig_file
 from tests.pmm.console.chromium import console, plan, rig_in
 
 WITHIN_S = 120.0
 KEPT = KeptQueue(
     (
-        KeptPlan(3, "b.toml", (
+        KeptPlan(3, "b.toml", "0" * 64, (
             EditPosted(number=3, run="r", frequency_hz=1.05), MovePosted(number=3, run="r", by=-1),
             HoldPosted(number=3, held=True),
         )),
-        KeptPlan(1, "ä.toml"),
+        KeptPlan(1, "ä.toml", "1" * 64),
     ),
     (
         ProposedChange(
@@ -43,12 +47,61 @@ def test_what_is_kept_is_read_again_and_rigs_do_not_share(tmp_path: Path) -> Non
     assert other.read() == KeptQueue()
 
 
-@pytest.mark.parametrize("content", ["", "{", "[]", '{"schema": "x"}', "\xff\xfe", "null"])
-def test_a_file_that_is_none_of_ours_is_named(tmp_path: Path, content: str) -> None:
+_HEAD = '{"schema": "pmm-console-queue-1", "rig": "rig.toml", "proposals": [], "plans": '
+STRANGE = (
+    "", "{", "[]", '{"schema": "x"}', "\xff\xfe", "null", "[" * 100_000,
+    _HEAD + '[{"number": 1, "plan": "p.toml", "changes": []}]}',  # without a checksum
+    _HEAD + '[{"number": 1, "plan": "p.toml", "sha256": "", "changes": [7]}]}',
+    _HEAD + '[{"number": 1, "plan": "p.toml", "sha256": "", "changes": 7}]}',
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("content", STRANGE)
+def test_a_file_that_is_none_of_ours_is_set_aside_and_named(tmp_path: Path, content: str) -> None:
     journal = QueueJournal(tmp_path, Path("rig.toml"))
-    journal.path.write_text(content, encoding="latin-1")
-    with pytest.raises(ConfigurationError, match="not the queue of a console"):
+    for number in (1, 2):
+        journal.path.write_text(content, encoding="latin-1")
+        aside = journal.path.with_name(f"{journal.path.name}.unread-{number}")
+        with pytest.raises(ConfigurationError, match="not the queue of a console") as raised:
+            journal.read()
+        assert f"it is kept as {aside.name}" in str(raised.value)
+        journal.write(KEPT)
+        assert aside.read_text(encoding="latin-1") == content
+        assert journal.read() == KEPT
+
+
+def test_a_file_that_can_be_neither_read_nor_moved_is_not_overwritten(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    journal = QueueJournal(tmp_path, Path("rig.toml"))
+    journal.path.write_text("{", encoding="utf-8")
+
+    def refused(*_: object) -> None:
+        raise PermissionError("refused")
+
+    monkeypatch.setattr(Path, "rename", refused)
+    with pytest.raises(ConfigurationError, match="not be moved away either: refused"):
         journal.read()
+    with pytest.raises(OSError, match="cannot be read"):
+        journal.write(KEPT)
+    assert journal.path.read_text(encoding="utf-8") == "{"
+
+
+def test_a_plan_whose_file_is_another_one_by_now_is_not_queued_again(tmp_path: Path) -> None:
+    rig = rig_in(tmp_path / "rig")
+    file = rig.with_name("mine.toml")
+    file.write_text(plan("mine"), encoding="utf-8")
+    plans = Plans(rig, read_rig_file(rig).hashes, rig.parent, tmp_path / "out")
+    queued = QueuedPlans()
+    number = queued.add(ready_plan(plans, "mine.toml", ""))
+    (kept,) = queued.kept_plans()
+    assert kept.sha256 == hashlib.sha256(file.read_bytes()).hexdigest()
+    again = restored_plan(plans, kept)
+    assert again is not None
+    assert again.packed.numbered(number) == queued.plan(number)
+    file.write_text(plan("mine", periods=9), encoding="utf-8")
+    with pytest.raises(ConfigurationError, match="is not the file that was queued"):
+        restored_plan(plans, kept)
 
 
 def test_a_writing_that_is_cut_leaves_the_queue_of_before(
