@@ -146,7 +146,7 @@ class PageActions:
     ) -> Response:
         who = who_asks(request)
         if self._in_control(who):
-            self._hub.follow_control()
+            self._hub.hear_holder()
         text, present = "", None
         try:
             body = await body_of(request, _LARGEST.get(kind, LARGEST_REQUEST))

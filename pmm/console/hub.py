@@ -74,6 +74,7 @@ class Hub:
         self._replied, self._written, self._utc = replied, written, utc
         self._lapsed = lapsed
         self._silence: asyncio.TimerHandle | None = None
+        self._silent: Requester | None = None  # has control, and no page open
         self._hello, self._connected = "null", False
         self._plans = self._figures = "{}"
         self._proposals = "[]"
@@ -160,17 +161,28 @@ class Hub:
             self.follow_control()
 
     def follow_control(self) -> None:
-        """Note that control may have moved, or that its holder was heard of; tell the browsers.
+        """Note that control may have moved; tell the browsers.
 
-        Where the holder's page is not open its silence is counted from now on.
+        Where the holder's page is not open its silence is counted, from when it began: whoever else
+        comes or goes does not begin it anew.
         """
         self.news.set()
+        holder = self.desk.holder if self.in_control is None else None
+        if holder is self._silent:
+            return
         if self._silence is not None:
             self._silence.cancel()
-        self._silence = None
-        if self.desk.holder is not None and self.in_control is None:
+        self._silent, self._silence = holder, None
+        if holder is not None:
             clock = asyncio.get_running_loop()
-            self._silence = clock.call_later(SILENT_S, self._let_lapse, self.desk.holder)
+            self._silence = clock.call_later(SILENT_S, self._let_lapse, holder)
+
+    def hear_holder(self) -> None:
+        """Note that whoever has control was heard of: a silence begins anew."""
+        if self._silence is not None:
+            self._silence.cancel()
+        self._silent = self._silence = None
+        self.follow_control()
 
     def _let_lapse(self, who: Requester) -> None:
         self.desk.give_back(who.session)

@@ -133,6 +133,35 @@ def test_begins_with_a_snapshot_and_then_gets_every_frame_and_message() -> None:
     _in_room(act)
 
 
+def test_a_silence_is_counted_from_its_beginning_whoever_else_comes_and_goes(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("pmm.console.hub.SILENT_S", 10.0)
+
+    async def act(room: Room) -> None:
+        hub, clock = room.hub, asyncio.get_running_loop()
+        began_s = clock.time()
+        room.join("a")
+        hub.part(hub.clients["a"])
+        ended_s = clock.time()
+        for name in "bcd":
+            await asyncio.sleep(0.01)
+            room.join(name)
+            hub.part(hub.clients[name])
+        silence = hub._silence
+        assert silence is not None
+        assert began_s + 10.0 <= silence.when() <= ended_s + 10.0
+        hub.hear_holder()  # a request of its own
+        assert silence.cancelled()
+        assert hub._silence is not None
+        assert hub._silence.when() > ended_s + 10.0
+        room.join("a")
+        assert hub._silence is None
+        assert room.lapsed == []
+
+    _in_room(act)
+
+
 def test_a_slow_browser_gets_the_latest_picture_with_all_points_and_nobody_waits_for_it() -> None:
     async def act(room: Room) -> None:
         first, slow = room.join("a"), room.join("b", slow=True)
@@ -245,7 +274,7 @@ def test_control_lapses_where_its_holder_is_silent(monkeypatch: pytest.MonkeyPat
         await room.round()
         assert (room.hub.desk.holder, room.lapsed) == (who("a"), [])
         room.hub.part(room.hub.clients["a"])
-        room.hub.follow_control()  # a request of the holder's without a page
+        room.hub.hear_holder()  # a request of the holder's without a page
         assert room.hub.desk.holder == who("a")
         await room.round()
         assert room.lapsed == [who("a")]
