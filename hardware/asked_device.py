@@ -35,7 +35,9 @@ class AskedDevice:
     Attributes
     ----------
     values
-        What they read last, in SI units; NaN before.
+        What they read last, in SI units; NaN before, and after a silence.
+    read_now
+        Names of those that were read in the present cycle.
     """
 
     def __init__(
@@ -49,6 +51,7 @@ class AskedDevice:
     ) -> None:
         self.name = name
         self.values = dict.fromkeys(numbers, math.nan)
+        self.read_now: set[str] = set()
         self._link = settings.link(name, services)
         self._numbers, self._status, self._command = dict(numbers), status, command
         self._refresh_s, self._silent_s = settings.refresh_s, settings.silent_s
@@ -58,6 +61,7 @@ class AskedDevice:
         self._told: dict[int, tuple[int, ...]] = {}  # what is to stand at an address
         self._kept: dict[int, tuple[tuple[int, ...], float]] = {}  # what does, and since when
         self._wants_power = self._resets = self._toggle = False
+        self._stands = False  # whether what it was told stands there, since power was asked for
         self._read_next = False
         self._life: tuple[float, float] | None = None  # the device's own counter, and since when
         self._deadline_s = math.inf
@@ -79,9 +83,8 @@ class AskedDevice:
 
     def reconnect(self) -> None:
         """Open a lost port again, and ask anew; raises as :meth:`reset_fault`."""
-        self._kept.clear()
+        self._forget()
         self._life = None
-        self.values = dict.fromkeys(self.values, math.nan)  # what it read before is old
         self._link.reset()
 
     def prepare(self) -> None:
@@ -89,7 +92,13 @@ class AskedDevice:
         self._link.prepare()
 
     def enable(self) -> None:
-        """Ask for power, at rest; a fault follows where a person has it in hand."""
+        """Ask for power, at rest; a fault follows where a person has it in hand.
+
+        Power is written once what the device was told stands there, written anew.
+        """
+        if not self._wants_power:
+            self._kept.clear()
+            self._stands = False
         self._wants_power = True
 
     def reset_fault(self) -> None:
@@ -128,11 +137,30 @@ class AskedDevice:
     def exchange(self, cycle: Cycle) -> tuple[bool, list[HardwareError]]:
         """Take what came; return whether the values are new, and what is wrong, once each."""
         self._now_s = cycle.time_s
+        self.read_now.clear()
         answers, faults = self._link.exchange(cycle, self._following)
         fresh = [self._take(answer) for answer in answers]
+        if not self._link.is_answering:
+            self._forget()
+        self._stands = self._stands or self._is_told()
         wrong = [error for error in self._device_faults() if type(error) not in self._known]
         self._known |= {type(error) for error in wrong}
         return any(fresh), faults + wrong
+
+    def _forget(self) -> None:
+        """Take what it read, and what it was told, for old."""
+        self.values = dict.fromkeys(self.values, math.nan)
+        self._kept.clear()
+        self._stands = False
+
+    def _is_told(self) -> bool:
+        """Whether it has said of all that it is told that it stands there."""
+        return all(self._acknowledges(address) for address in self._told)
+
+    def _acknowledges(self, address: int) -> bool:
+        """Whether it has said that what it is told stands at an address."""
+        told = self._told.get(address)
+        return told is not None and self._kept.get(address, ((), 0.0))[0] == told
 
     def _says(self, name: str) -> bool | None:
         return None if self._status is None else self._status.says(name, self._word)
@@ -174,6 +202,7 @@ class AskedDevice:
             if (READ[number.table], number.address) in at:
                 first = number.address - request.address
                 self.values[name] = number.value(words[first : first + number.count])
+                self.read_now.add(name)
         if self._status is not None:
             self._word = at.get((READ[self._status.table], self._status.address), self._word)
         if not math.isnan(life := self.values.get("life", math.nan)) and (
@@ -195,7 +224,7 @@ class AskedDevice:
 
     def _due_request(self) -> RegisterRequest | None:
         command = self._command
-        if command is not None:
+        if command is not None and (self._stands or not self._wants_power):
             word = command.word(enable=self._wants_power, reset=self._resets, toggle=self._toggle)
             if not self._is_written(command.address, (word,)):
                 self._resets, self._toggle = False, not self._toggle

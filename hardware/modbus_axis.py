@@ -82,12 +82,13 @@ class ModbusAxis(AskedDevice):
         self._settings = settings
         self._goal: float | None = None
         self._read = False
+        self._stays = False  # whether it is still to be told to stay where it is
         self._stood: tuple[float, float] | None = None  # where it stands, and since when
 
     @property
     def position(self) -> float:
         """The angle that it reads, in rad; NaN before, and in silence."""
-        return self.values["position"] if self._link.is_answering else math.nan
+        return self.values["position"] if self._is_heard else math.nan
 
     @property
     def homed(self) -> bool:
@@ -130,7 +131,7 @@ class ModbusAxis(AskedDevice):
         """
         self._require_power()
         check_move(self, position)
-        self._goal = position
+        self._goal, self._stays = position, False
         self.tell(self._settings.registers.set_position, position)
         takes_s = abs(position - self.position) / self._settings.speed
         self.set_deadline(
@@ -138,14 +139,22 @@ class ModbusAxis(AskedDevice):
             f"{position:g} rad within {self._settings.tolerance:g} rad",
         )
 
+    def enable(self) -> None:
+        """Ask for power; before it has any, it is told to stay where it is read to be."""
+        self._stays = self._stays or not self._wants_power
+        super().enable()
+
     def stop(self) -> None:
-        """Stay where it is; one that has arrived stays arrived."""
+        """Stay where it is; one that has arrived stays arrived.
+
+        Where it is not known the power is taken off.
+        """
         self.cancel_deadline()
         if self._goal is None or self._is_near(self._goal):
             return
-        if self.homed:
-            self.tell(self._settings.registers.set_position, self.position)
-        self._goal = None
+        self._wants_power = self._wants_power and math.isfinite(self.position)
+        self._lose()
+        self._stay()
 
     def quick_stop(self) -> None:
         """Stay where it is, without power."""
@@ -156,25 +165,70 @@ class ModbusAxis(AskedDevice):
         """Take the power off, where it is."""
         self.quick_stop()
 
+    def reconnect(self) -> None:
+        """Open a lost port again, and ask anew, without power; raises as :meth:`reset_fault`."""
+        self._wants_power = False
+        self._lose()
+        super().reconnect()
+
     def reset_fault(self) -> None:
         """Begin anew, without power; raises as :meth:`AskedDevice.reset_fault`."""
         self.stop()
+        self._lose()
         super().reset_fault()
 
     def tick(self, cycle: Cycle) -> None:
         """Take what came; raises as :meth:`AskedDevice.exchange` says."""
+        was_led = self._is_led
         fresh, faults = self.exchange(cycle)
+        if not self._is_led:
+            self._wants_power = self._wants_power and not was_led
+            self._lose()
         if fresh:
-            if (
-                self._stood is None
-                or not abs(self.position - self._stood[0]) <= self._rest_tolerance
-            ):
-                self._stood = (self.position, self._now_s)
-            if self.settled:
-                self.cancel_deadline()
+            self._look()
         if faults and not self._wants_power:
             self.stop()
         raise_worst(faults)
+
+    def _look(self) -> None:
+        """Take what was read: where it is, and whether it has arrived."""
+        if "position" in self.read_now:
+            self._stay()
+        if self._stood is None or not abs(self.position - self._stood[0]) <= self._rest_tolerance:
+            self._stood = (self.position, self._now_s)
+        if self.settled:
+            self.cancel_deadline()
+        if not self._wants_power and self._acknowledges(self._address):
+            # Without power it may be turned by hand: it must not be told to go back.
+            del self._told[self._address]
+
+    def _lose(self) -> None:
+        """Forget the set-position; where it is, is told instead, once that is read."""
+        if self._goal is not None and not self._is_near(self._goal):
+            self._goal = None
+        self._stays = self._told.pop(self._address, None) is not None or self._stays
+
+    def _stay(self) -> None:
+        """Tell it to stay where it is, where that is still to be told and it is known."""
+        if self._stays and self._is_led and math.isfinite(self.position):
+            self._stays = False
+            self.tell(self._settings.registers.set_position, self.position)
+
+    def _is_told(self) -> bool:
+        return not self._stays and super()._is_told()
+
+    @property
+    def _address(self) -> int:
+        return self._settings.registers.set_position.address
+
+    @property
+    def _is_heard(self) -> bool:
+        return self._link.is_open and self._link.is_answering
+
+    @property
+    def _is_led(self) -> bool:
+        """Whether it is heard, and in nobody else's hand."""
+        return self._is_heard and self._says("remote") is not False
 
     @property
     def _rest_tolerance(self) -> float:
