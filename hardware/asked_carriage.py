@@ -26,6 +26,7 @@ from hardware.limits import (
 from hardware.roles import Cycle, Sample, SampleBlock, blocks
 
 _AT_START: Final = 0.02  # of the track, in metres: so near the start it stands there
+_PLACE: Final = "m as its place; look at its sensor, then at type and words of position"
 
 
 class AskedCarriage(AskedDevice):
@@ -93,7 +94,7 @@ class AskedCarriage(AskedDevice):
             If it is beyond the highest, or what is left of the track is shorter than its ramps, or
             it cannot turn so fast.
         NotReadyError
-            If it is not enabled.
+            If it is not enabled, or its place on the track is not known.
         """
         self._check_speed(speed_m_s)
         if abs(turn_rate_rad_s) > self._settings.highest_turn_rate_rad_s:
@@ -104,6 +105,8 @@ class AskedCarriage(AskedDevice):
             )
         ramp_s = speed_m_s / self._settings.acceleration_m_s2
         needs_m, left_m = speed_m_s * (ramp_s + self._settings.settle_s), self._left_m
+        if self.returns and not math.isfinite(left_m):
+            raise NotReadyError(self.name, f"reads {self.position_m:g} {_PLACE}")
         if left_m < needs_m:
             raise LimitError(
                 self.name,
@@ -173,7 +176,7 @@ class AskedCarriage(AskedDevice):
         TrackEndError
             If it has to stop now for the track's sake.
         SensorInvalidError
-            If what it reads is no speed of this carriage.
+            If what it reads is no speed of this carriage, or no place.
         HardwareError
             As :meth:`AskedDevice.exchange` says.
         """
@@ -209,8 +212,8 @@ class AskedCarriage(AskedDevice):
 
     @property
     def _left_m(self) -> float:
-        """Track that is left ahead; infinite where nobody reads the place."""
-        return math.inf if math.isnan(self.position_m) else self._track.high - self.position_m
+        """Track that is left ahead; infinite where nobody reads the place, NaN where it is none."""
+        return self._track.high - self.position_m if self.returns else math.inf
 
     def _check_speed(self, speed_m_s: float) -> None:
         if not (speed_m_s > 0.0 and speed_m_s in self.speed_m_s):
@@ -270,26 +273,27 @@ class AskedCarriage(AskedDevice):
         fastest = math.sqrt(self._settings.acceleration_m_s2 * way_m)
         self.tell(self._settings.signals.set_speed, -min(self._settings.return_speed_m_s, fastest))
 
-    @property
-    def _braking_m(self) -> float:
-        return self.measured_speed_m_s**2 / (2.0 * self._settings.acceleration_m_s2)
-
     def _implausible_readings(self) -> Iterator[HardwareError]:
-        settings, speed, highest = self._settings, self.measured_speed_m_s, self.speed_m_s.high
-        if abs(speed) > CARRIAGE_PLAUSIBLE * highest:
+        speed, highest = self.measured_speed_m_s, self.speed_m_s.high
+        if "speed" in self.read_now and not abs(speed) <= CARRIAGE_PLAUSIBLE * highest:
             yield SensorInvalidError(
                 self.name,
                 f"reads {speed:.6g} m/s where {highest:g} m/s is the highest; correct type, words, "
                 "scale or unit of speed",
             )
-            return
-        if self._goal_m_s <= 0.0:
-            return
+        elif "position" in self.read_now and not math.isfinite(self.position_m):
+            yield SensorInvalidError(self.name, f"reads {self.position_m:g} {_PLACE}")
+        elif self._goal_m_s > 0.0:
+            yield from self._end_of_track()
+
+    def _end_of_track(self) -> Iterator[HardwareError]:
+        speed, lost_s = self.measured_speed_m_s, 2.0 * self._settings.answer_s
+        braking_m = speed**2 / (2.0 * self._settings.acceleration_m_s2)
         if self._says("at_end"):
             yield TrackEndError(self.name, "has run onto the switch at the end of its track")
-        elif self._left_m <= TRACK_MARGIN * self._braking_m + 2.0 * settings.answer_s * speed:
+        elif not self._left_m > TRACK_MARGIN * braking_m + lost_s * speed:
             yield TrackEndError(
                 self.name,
                 f"{self._left_m:.3g} m of track are left at {speed:.3g} m/s, which brakes in "
-                f"{self._braking_m:.3g} m; ask for fewer periods, or start further back",
+                f"{braking_m:.3g} m; ask for fewer periods, or start further back",
             )

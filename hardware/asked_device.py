@@ -71,9 +71,9 @@ class AskedDevice:
 
     @property
     def enabled(self) -> bool:
-        """Whether it is under power, as far as it says, and in the program's hand."""
+        """Whether it is under power, as far as it says, and in the program's hand, and reads."""
         refused = False in (self._says("remote"), self._says("ready"))
-        return self._wants_power and self._link.is_answering and not refused
+        return self._wants_power and self.is_answering and not refused
 
     @property
     def is_answering(self) -> bool:

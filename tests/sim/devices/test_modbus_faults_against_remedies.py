@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from hardware.description.errors import ConfigurationError
-from hardware.errors import HardwareError
+from hardware.errors import HardwareError, NotReadyError
 from hardware.pacing import FreeRunning
 from hardware.rig import Rig
 from hardware.rig_configuration import read_rig
@@ -132,8 +132,37 @@ def test_a_speed_that_is_no_number_is_no_speed() -> None:
         found = faults_of(rig, 700)
         assert not rig.carriage.at_speed
         assert rig.carriage.moving
-        assert "TransitionTimeoutError" in found[0]
-        assert "it reads speed nan" in found[0]
+        assert found[0].startswith("SensorInvalidError: carriage: reads nan m/s")
+
+
+@pytest.mark.parametrize("place_m", [math.nan, math.inf, -math.inf])
+def test_a_place_that_is_no_number_stops_it_and_does_not_let_it_start(place_m) -> None:
+    table = other("registers", "position", {"address": 12, "unit": "m", "type": "float32",
+                                            "table": "input"})  # fmt: skip
+    table["port"] = PORT
+    with carriage_of(table, table) as (rig, world):
+        device, position = world.talkers["carriage"], rig.configuration.carriage.settings.registers
+        rig.carriage.enable()
+        faults_of(rig, 30)
+        rig.carriage.run_at(0.5)
+        assert faults_of(rig, 300) == []
+        move = device.move
+
+        def without_place(step_s: float) -> None:
+            move(step_s)
+            device.show(position.position, place_m)
+
+        device.move = without_place
+        (told,) = faults_of(rig, 300)
+        assert told.startswith(f"SensorInvalidError: carriage: reads {place_m:g} m as its place")
+        assert rig.carriage.measured_speed_m_s == 0.0
+        rig.reset()
+        rig.carriage.enable()
+        assert len(faults_of(rig, 30)) == 1  # it is told again: nothing has changed
+        with pytest.raises(HardwareError, match="reset first"):
+            rig.carriage.run_at(0.5)
+        with pytest.raises(NotReadyError, match="as its place; look at its sensor"):
+            rig.devices[0].run_at(0.5)
 
 
 def test_without_pymodbus_it_is_said_what_to_install(monkeypatch) -> None:
