@@ -287,7 +287,7 @@ class AskedCarriage(AskedDevice):
             yield from self._end_of_track()
 
     def _end_of_track(self) -> Iterator[HardwareError]:
-        speed, lost_s = self.measured_speed_m_s, 2.0 * self._settings.answer_s
+        speed, lost_s = self.measured_speed_m_s, 2.0 * self._settings.lost_s
         braking_m = speed**2 / (2.0 * self._settings.acceleration_m_s2)
         if self._says("at_end"):
             yield TrackEndError(self.name, "has run onto the switch at the end of its track")

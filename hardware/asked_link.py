@@ -41,11 +41,26 @@ class AskedSettings(ABC):
     refresh_s: float = 0.2
 
     def __post_init__(self) -> None:
-        if not 0.0 < self.answer_s < self.silent_s:
+        if not 0.0 < self.answer_s <= self.lost_s < self.silent_s:
             raise ConfigurationError(
                 f"answer_s = {self.answer_s:g} has to be above 0 and below silent_s = "
-                f"{self.silent_s:g}: a single answer that is lost is asked for again"
+                f"{self.silent_s:g}: a single answer that is lost is asked for again after "
+                f"{self.lost_s:g} s"
             )
+
+    @property
+    def is_numbered(self) -> bool:
+        """Whether an answer says which question it belongs to."""
+        return True
+
+    @property
+    def lost_s(self) -> float:
+        """After so long is asked again what was not answered.
+
+        Without numbers the line has to be quiet for as long again as an answer may take: one that
+        comes late would be taken for the next question's, and so on with all that follow.
+        """
+        return self.answer_s if self.is_numbered else 2.0 * self.answer_s
 
     @abstractmethod
     def link(self, name: str, services: Services) -> "AskedLink":
@@ -155,6 +170,8 @@ class PortLink(AskedLink):
         super().__init__(name, settings)
         self._port = port
         self._asked_s: float | None = None  # since when an answer is waited for
+        self._now_s = 0.0
+        self._quiet_s: float | None = None  # since when nothing has come that belongs nowhere
 
     @property
     def is_open(self) -> bool:
@@ -164,7 +181,7 @@ class PortLink(AskedLink):
     def reset(self) -> None:
         """Open a lost port again and begin anew; raises as :meth:`SerialPort.open`."""
         self._port.open()
-        self._asked_s = None
+        self._quiet(self._now_s)
         super().reset()
 
     def close(self) -> None:
@@ -173,21 +190,44 @@ class PortLink(AskedLink):
 
     def _poll(self, cycle: Cycle, following: Following) -> tuple[list[Answer], list[HardwareError]]:
         answers: list[Answer] = []
-        now_s = cycle.time_s
+        self._now_s = now_s = cycle.time_s
         try:
-            for line in self._port.lines():
+            for line in self._arrived(now_s):
                 self._asked_s = None
                 answers += self._answers_in(line)
-            due = self._asked_s is None or now_s - self._asked_s > self._settings.answer_s
-            request = following() if due and self._port.is_open else None
+            request = following() if self._is_due(now_s) and self._port.is_open else None
             if request is not None:
                 self._asked_s = now_s
                 self._port.write(self._frame(request))
         except LineError as error:  # a single one is asked for again
             self._trouble = str(error)
+            if self._asked_s is None or self._quiet_s is not None:  # what came belongs nowhere
+                self._quiet(now_s)
         except HardwareError as error:
             return answers, [error]
         return answers, []
+
+    def _arrived(self, now_s: float) -> list[bytes]:
+        """Return what has come, but for what belongs to no question."""
+        lines = self._port.lines()
+        if self._quiet_s is None:
+            return lines
+        if lines:
+            self._quiet_s = now_s
+        return []
+
+    def _quiet(self, now_s: float) -> None:
+        """Take nothing from now on, until nothing comes any more."""
+        self._asked_s = None
+        self._quiet_s = None if self._settings.is_numbered else now_s
+
+    def _is_due(self, now_s: float) -> bool:
+        """Whether to ask what follows: the last was answered, or is lost and the line quiet."""
+        if self._asked_s is not None and now_s - self._asked_s > self._settings.answer_s:
+            self._quiet(now_s)
+        if self._quiet_s is not None and now_s - self._quiet_s > self._settings.answer_s:
+            self._quiet_s = None
+        return self._asked_s is None and self._quiet_s is None
 
     @abstractmethod
     def _answers_in(self, line: bytes) -> Iterator[Answer]:

@@ -66,6 +66,11 @@ class LineSettings(AskedSettings):
     port: LinePortSettings
 
     @property
+    def is_numbered(self) -> bool:
+        """Whether a reply says which line it belongs to: it does not."""
+        return False
+
+    @property
     @abstractmethod
     def every_line(self) -> tuple[Line, ...]:
         """All that it is asked and told, each with an address of its own."""

@@ -39,6 +39,11 @@ class ModbusSettings(AskedSettings):
         if not 0 <= self.unit_id <= 255:
             raise ConfigurationError(f"unit_id = {self.unit_id}; it is 0 to 255")
 
+    @property
+    def is_numbered(self) -> bool:
+        """Whether an answer says which question it belongs to: by TCP it does."""
+        return self.port.framing == "tcp"
+
     def link(self, name: str, services: Services) -> "ModbusLink":
         """Return what asks it."""
         return ModbusLink(name, self, services)
@@ -71,13 +76,17 @@ class ModbusLink(PortLink):
             asked[1], request.address, request.count, tuple(request.registers)
         )
         words = question.words or tuple(answer.registers)
-        if answer.function_code != question.function or len(words) != (
-            len(question.words) or question.count
+        elsewhere = question.function == WRITE and answer.address != question.address
+        if (
+            answer.function_code != question.function
+            or elsewhere
+            or len(words) != (len(question.words) or question.count)
         ):
             raise LineError(
                 self.name,
                 f"answers {len(words)} registers of function {answer.function_code} where "
-                f"{question.count} of {question.function} were asked for; look who else asks it",
+                f"{question.count} of {question.function} were asked for; look who else asks it, "
+                "and whether it answers later than answer_s",
             )
         yield question, words
 
