@@ -180,8 +180,11 @@ class PortLink(AskedLink):
 
     def reset(self) -> None:
         """Open a lost port again and begin anew; raises as :meth:`SerialPort.open`."""
+        was_open = self._port.is_open
         self._port.open()
-        self._quiet(self._now_s)
+        self._asked_s = None
+        if was_open:  # an answer may still be under way
+            self._quiet(self._now_s)
         super().reset()
 
     def close(self) -> None:
