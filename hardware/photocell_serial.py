@@ -21,6 +21,10 @@ from hardware.serial_port import PortSettings
 
 _MARKS: Final = 240
 _ENOUGH: Final = 3
+_JUMP_S: Final = 1.0
+"""So far from where the fit has it, a line shows that the device began to count anew. A line is
+under way for a cycle and its transmission; half might be a server that stalls, twice lets a pulse
+be two seconds off."""
 
 
 class ClockFit:
@@ -51,6 +55,10 @@ class ClockFit:
             off = device - device.mean()
             self._slope = float(off @ (rig - rig.mean()) / (off @ off))
         self._offset_s = float(np.min(rig - self._slope * device))
+
+    def is_of(self, device_s: float, arrived_s: float) -> bool:
+        """Whether a mark can be of the clock of those before it; the first one is."""
+        return not self._rig or abs(arrived_s - self.rig_time_s(device_s)) <= _JUMP_S
 
     def rig_time_s(self, device_s: float) -> float:
         """Return the rig's time for a time of the device."""
@@ -85,12 +93,8 @@ class SerialPhotocell(SerialInstrument):
 
     def __init__(self, name: str, settings: TimestamperSettings, services: Services) -> None:
         super().__init__(name, settings, services, (LineKind.PULSE, LineKind.TIME))
-        self.fit = ClockFit()
-        self._ticks = Unwrapped(TICK_MODULUS)
+        self._begin()
         self._pulses: list[Pulse] = []
-        self._count: int | None = None
-        self._at_s: float | None = None  # of the last pulse, in the rig's time
-        self._waiting_s: float | None = None  # since when the first pulse is due
         self._period_s: float | None = None
 
     def expect(self, frequency_hz: float | None) -> None:
@@ -109,6 +113,7 @@ class SerialPhotocell(SerialInstrument):
         UnpluggedError, SilentPortError, LineError
             As the line does.
         """
+        self._begin_where_lost()
         if self._period_s is None:
             self._port.recover(cycle.time_s)
         self._read(cycle)
@@ -136,11 +141,28 @@ class SerialPhotocell(SerialInstrument):
         PortOpenError
             If the port is still not there.
         """
+        self._begin_where_lost()
         super().reset_fault()
         self._at_s = self._waiting_s = self._count = None
 
+    def _begin(self) -> None:
+        """Know nothing of the device's clock and counts: it may have begun anew."""
+        self.fit = ClockFit()
+        self._ticks = Unwrapped(TICK_MODULUS)
+        self._count: int | None = None
+        self._at_s: float | None = None  # of the last pulse, in the rig's time
+        self._waiting_s: float | None = None  # since when the first pulse is due
+
+    def _begin_where_lost(self) -> None:
+        if not self._port.is_open:
+            self._begin()
+
     def _take(self, line: SerialLine, cycle: Cycle) -> None:
         device_s = self._ticks.take(line.ticks_us) * 1e-6
+        is_new = not self.fit.is_of(device_s, cycle.time_s)
+        if is_new:
+            self._begin()
+            device_s = self._ticks.take(line.ticks_us) * 1e-6
         self.fit.add(device_s, cycle.time_s)
         before, self._count = self._count, int(line.value)
         if line.kind is LineKind.PULSE:
@@ -149,6 +171,10 @@ class SerialPhotocell(SerialInstrument):
             self._pulses.append(Pulse(self._count, at_s))
             self._compare(since, at_s)
             before = None if before is None else before + 1
+        if is_new and self._period_s is not None:
+            raise PhotocellMissedError(
+                self.name, "its clock jumped: it began anew, and pulses may be missing"
+            )
         lost = 0 if before is None else self._count - before
         if lost:
             raise PhotocellMissedError(
