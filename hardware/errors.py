@@ -173,6 +173,10 @@ class PortOpenError(HardwareError):
     reaction = Reaction.REFUSE
 
 
+class PortOpeningError(PortOpenError):
+    """A serial port is still being opened: its server takes its time, or does not answer."""
+
+
 class ModbusError(HardwareError):
     """A Modbus device refuses what it is asked: an exception of the protocol, with its code."""
 

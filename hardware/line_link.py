@@ -10,7 +10,8 @@ from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from hardware.driver import Services
 from hardware.errors import LineError
 from hardware.line_registers import Ending, Line, LineCommand, LineNumber, LineStatus
-from hardware.serial_port import PortSettings, Splitter
+from hardware.port_lines import Splitter
+from hardware.serial_port import PortSettings
 
 _LONGEST: Final = 256
 _UNKNOWN: Final = -1  # address of what a log has, and nobody asked

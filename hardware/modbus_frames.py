@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Final, Literal
 from hardware.description.errors import ConfigurationError
 from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from hardware.errors import LineError
-from hardware.serial_port import PortSettings, Splitter
+from hardware.port_lines import Splitter
+from hardware.serial_port import PortSettings
 
 if TYPE_CHECKING:
     from pymodbus.framer import FramerBase

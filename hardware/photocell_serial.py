@@ -97,6 +97,14 @@ class SerialPhotocell(SerialInstrument):
         self._pulses: list[Pulse] = []
         self._period_s: float | None = None
 
+    def _begin(self) -> None:
+        """Know nothing of the device's clock and counts: it may have begun anew."""
+        self.fit = ClockFit()
+        self._ticks = Unwrapped(TICK_MODULUS)
+        self._count: int | None = None
+        self._at_s: float | None = None  # of the last pulse, in the rig's time
+        self._waiting_s: float | None = None  # since when the first pulse is due
+
     def expect(self, frequency_hz: float | None) -> None:
         """Say how fast the shaft turns; ``None``: it is idle, a lost port is opened again."""
         self._period_s = 1.0 / frequency_hz if frequency_hz else None
@@ -133,6 +141,11 @@ class SerialPhotocell(SerialInstrument):
         for device_s, arrived_s in carried["marks"]:
             self.fit.add(device_s, arrived_s)
 
+    def reconnect(self) -> None:
+        """Open a lost port again; raises as :meth:`reset_fault`."""
+        self._begin_where_lost()
+        super().reconnect()
+
     def reset_fault(self) -> None:
         """Open a lost port again and begin anew.
 
@@ -144,14 +157,6 @@ class SerialPhotocell(SerialInstrument):
         self._begin_where_lost()
         super().reset_fault()
         self._at_s = self._waiting_s = self._count = None
-
-    def _begin(self) -> None:
-        """Know nothing of the device's clock and counts: it may have begun anew."""
-        self.fit = ClockFit()
-        self._ticks = Unwrapped(TICK_MODULUS)
-        self._count: int | None = None
-        self._at_s: float | None = None  # of the last pulse, in the rig's time
-        self._waiting_s: float | None = None  # since when the first pulse is due
 
     def _begin_where_lost(self) -> None:
         if not self._port.is_open:

@@ -57,6 +57,15 @@ class SerialInstrument(ABC):
     def prepare(self) -> None:  # noqa: B027
         """Nothing to write: the device talks by itself."""
 
+    @property
+    def is_answering(self) -> bool:
+        """Whether its port is open: it talks by itself."""
+        return self._port.is_open
+
+    def reconnect(self) -> None:
+        """Open a lost port again; raises as :meth:`reset_fault`."""
+        self._port.open()
+
     def reset_fault(self) -> None:
         """Open a lost port again and begin anew.
 

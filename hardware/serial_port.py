@@ -4,61 +4,23 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Final, Literal, Protocol, TypeAlias
+from typing import Final, Literal, Protocol, TypeAlias
 
 import serial
 from serial.tools import list_ports
 
 from hardware.bus_owner import own_port
-from hardware.errors import LineError, PortOpenError, UnpluggedError
+from hardware.errors import PortOpenError, PortOpeningError, UnpluggedError
 from hardware.installed import installed
-
-if TYPE_CHECKING:
-    from hardware.ownership import Ownership
+from hardware.ownership import Ownership
+from hardware.port_lines import LineSplitter, Splitter
+from hardware.port_opening import PortOpening
 
 # A package that brings URLs of its own for pyserial has an entry point here, named by the scheme;
 # loading it makes them known.
 URL_GROUP: Final = "pmm.serial_urls"
 _CHUNK: Final = 65536
-_LONGEST_LINE: Final = 256
 _FIRST_BACK_OFF_S, _LAST_BACK_OFF_S = 0.5, 8.0
-
-
-class Splitter(Protocol):
-    """Makes whole lines of the bytes that arrive."""
-
-    def sent(self, data: bytes) -> None:
-        """Take what was written."""
-        ...
-
-    def split(self, data: bytes) -> list[bytes]:
-        """Take what has arrived, if anything; return the lines that it completes."""
-        ...
-
-
-class LineSplitter:
-    """Lines that end with a line feed, which is taken off."""
-
-    def __init__(self, name: str) -> None:
-        self._name = name
-        self._rest = b""
-
-    def sent(self, data: bytes) -> None:
-        """What was written does not matter."""
-
-    def split(self, data: bytes) -> list[bytes]:
-        """Return the lines; empty ones are left out.
-
-        Raises
-        ------
-        LineError
-            If so much arrived without a line feed that it cannot be a line.
-        """
-        *lines, self._rest = (self._rest + data).split(b"\n")
-        if len(self._rest) > _LONGEST_LINE:
-            start, self._rest = self._rest[:32], b""
-            raise LineError(self._name, f"no line feed after {_LONGEST_LINE} bytes ({start!r} ...)")
-        return [line for line in lines if line.strip()]
 
 
 @dataclass(frozen=True)
@@ -173,6 +135,22 @@ def resolve(url: str) -> str:
     return device
 
 
+_Opened: TypeAlias = tuple[serial.Serial | None, Ownership | None]
+
+
+def _let_go(opened: _Opened) -> None:
+    """Close a port, and let other processes have it."""
+    port, owned = opened
+    if port is not None:
+        link = getattr(port, "_socket", None)  # pyserial leaves it where its other end is gone
+        with suppress(OSError):  # an unplugged port has nothing left to close
+            port.close()
+        if link is not None:
+            link.close()
+    if owned is not None:
+        owned.release()
+
+
 class SerialPort:
     """A port that is read by lines, never waiting.
 
@@ -190,9 +168,9 @@ class SerialPort:
         self._splitter = settings.splitter(name)
         self._back_off_s = _FIRST_BACK_OFF_S
         self._again_s = 0.0
-        self._port: serial.Serial | None = None
-        self._owned: Ownership | None = None
-        self.open()
+        self._opening: PortOpening[_Opened] | None = None
+        self._port: serial.Serial | None
+        self._port, self._owned = self._opened()
 
     @property
     def is_open(self) -> bool:
@@ -200,14 +178,32 @@ class SerialPort:
         return self._port is not None
 
     def open(self) -> None:
-        """Open the port if it is not; raises as the constructor does."""
+        """Open the port if it is not, in a thread of its own: to connect may take seconds.
+
+        Raises
+        ------
+        PortOpeningError
+            If it is still being opened; ask again in a later cycle.
+        PortOpenError
+            As the constructor does.
+        """
         if self._port is not None:
             return
+        self._opening = opening = self._opening or PortOpening(self._opened, _let_go)
+        if not opening.is_over():
+            raise PortOpeningError(self._name, f"{self._settings.url} is still being opened")
+        self._opening = None
+        opened = opening.result()
+        self._splitter = self._settings.splitter(self._name)
+        self._port, self._owned = opened
+
+    def _opened(self) -> _Opened:
+        owned: Ownership | None = None
         try:
             know(self._settings.url.partition("://")[0])
             url = resolve(self._settings.url)
-            self._owned = self._owned or own_port(self._name, url)
-            self._port = serial.serial_for_url(
+            owned = own_port(self._name, url)
+            port = serial.serial_for_url(
                 url,
                 baudrate=self._settings.baud_rate,
                 parity=self._settings.parity[0].upper(),
@@ -216,11 +212,11 @@ class SerialPort:
                 exclusive=True,
             )
         except (OSError, ValueError) as error:
-            self._disown()
+            _let_go((None, owned))
             raise PortOpenError(
                 self._name, f"{self._settings.url} cannot be opened: {error}"
             ) from error
-        self._splitter = self._settings.splitter(self._name)
+        return port, owned
 
     def lines(self) -> list[bytes]:
         """Return the whole lines that have arrived, without their line feed; none if closed.
@@ -271,27 +267,21 @@ class SerialPort:
         try:
             self.open()
             self._back_off_s = _FIRST_BACK_OFF_S
+        except PortOpeningError:
+            return False
         except PortOpenError:
             self._again_s = now_s + self._back_off_s
             self._back_off_s = min(2.0 * self._back_off_s, _LAST_BACK_OFF_S)
         return self.is_open
 
     def close(self) -> None:
-        """Close the port; may be called twice."""
-        port, self._port = self._port, None
-        if port is not None:
-            link = getattr(port, "_socket", None)  # pyserial leaves it where its other end is gone
-            with suppress(OSError):  # an unplugged port has nothing left to close
-                port.close()
-            if link is not None:
-                link.close()
-        self._disown()
-
-    def _disown(self) -> None:
-        """Let other processes have the port."""
-        owned, self._owned = self._owned, None
-        if owned is not None:
-            owned.release()
+        """Close the port, also one that is being opened; may be called twice."""
+        opening, self._opening = self._opening, None
+        if opening is not None:
+            opening.abandon()
+        opened = self._port, self._owned
+        self._port = self._owned = None
+        _let_go(opened)
 
     def _lost_port(self, action: str, error: OSError) -> UnpluggedError:
         self.close()
