@@ -83,6 +83,7 @@ class ModbusAxis(AskedDevice):
         self._goal: float | None = None
         self._read = False
         self._stays = False  # whether it is still to be told to stay where it is
+        self._read_s = -math.inf  # when its position was read last
         self._stood: tuple[float, float] | None = None  # where it stands, and since when
 
     @property
@@ -154,7 +155,8 @@ class ModbusAxis(AskedDevice):
             return
         self._wants_power = self._wants_power and math.isfinite(self.position)
         self._lose()
-        self._stay()
+        if self._now_s - self._read_s <= self._settings.lost_s:  # else it is read first
+            self._stay()
 
     def quick_stop(self) -> None:
         """Stay where it is, without power."""
@@ -193,6 +195,7 @@ class ModbusAxis(AskedDevice):
     def _look(self) -> None:
         """Take what was read: where it is, and whether it has arrived."""
         if "position" in self.read_now:
+            self._read_s = self._now_s
             self._stay()
         if self._stood is None or not abs(self.position - self._stood[0]) <= self._rest_tolerance:
             self._stood = (self.position, self._now_s)

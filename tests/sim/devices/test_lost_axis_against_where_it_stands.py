@@ -112,6 +112,22 @@ def test_nothing_moves_it_but_a_command(framing, left_out, lost, command) -> Non
         assert rig.faults == []
 
 
+@pytest.mark.parametrize("left_out", [(), ("command",)])
+def test_stopped_in_a_short_silence_it_does_not_go_back(left_out) -> None:
+    with under_way(table_of("tcp", *left_out)) as (rig, device):
+        lose(device, "link")
+        cycle(rig, 50)  # it goes on, unheard, for 25 mrad
+        rig.angles["drift"].stop()
+        lose(device, "")
+        before_rad = device.angle_rad
+        for _ in range(200):
+            cycle(rig, 1)
+            assert (
+                before_rad - COUNT_RAD <= device.angle_rad <= before_rad + 25 * SPEED_RAD_S * 0.01
+            )
+        assert rig.faults == []
+
+
 @pytest.mark.parametrize("command", ["stop", "quick_stop", "disable", "reset_fault", "reconnect"])
 def test_turned_by_hand_without_power_it_stays_when_it_is_enabled(command) -> None:
     with under_way(table_of("tcp")) as (rig, device):
