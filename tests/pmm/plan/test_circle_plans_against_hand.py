@@ -10,6 +10,7 @@ from hardware.carriage_settings import CarriageRegisters, ModbusCarriageSettings
 from hardware.description.errors import ConfigurationError
 from hardware.description.kinds import RunKind
 from hardware.description.oscillator import HORIZONTAL_1963
+from hardware.modbus_frames import ModbusPortSettings
 from hardware.modbus_registers import Register
 from pmm.campaign.campaign_file import read_campaign
 from pmm.plan.campaign_writer import FinishedRun, write_campaign
@@ -97,7 +98,7 @@ def test_a_tank_has_its_radii_and_one_turn_is_enough(tmp_path: Path) -> None:
 
 SPEED = {"set_speed": Register(100, "mm/s", "int32"), "speed": Register(0, "m/s", "float32")}
 TURN = {"set_turn_rate": Register(104, "deg/s", scale=0.01), "turn_rate": Register(6, "rad/s")}
-PORT = {"url": "socket://plc:502"}
+PORT = ModbusPortSettings("socket://plc:502")
 
 
 def settings(most: float, **registers: Register) -> ModbusCarriageSettings:
