@@ -46,6 +46,18 @@ def keep_command(places: tuple[Path, ...], output: Path) -> None:
     click.echo(f"{output}: {keep(places, output)} campaigns")
 
 
+@main.command("validate")
+@click.argument("place", type=PLACE)
+@LOOK
+def validate_command(place: Path, look: str) -> None:
+    """Say how campaigns in PLACE are told by a classifier of the other half, and by ours."""
+    from tests.sealed.learning.validation import validated
+
+    with in_words():
+        for line in validated(examples(place), look):
+            click.echo(line)
+
+
 @main.command("boost")
 @click.argument("board", type=BOARD)
 @click.option("--campaigns", required=True, type=PLACE,

@@ -1,11 +1,14 @@
 """Gradient boosting where the right answer is plain, and importance where one cell tells it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from tests.sealed.learning.boosted import Classifier, importance
 from tests.sealed.learning.features import of_components
 from tests.sealed.learning.training import Example
+from tests.sealed.learning.validation import scored
 
 pytest.importorskip("sklearn", reason="optional dependency peers")
 
@@ -34,6 +37,31 @@ def test_what_is_plain_is_named_with_its_stage() -> None:
         shares, stages = model.shares(asked.features["components"])
         assert shares[asked.right[0]] > 0.9
         assert stages[(asked.stages or ("none",))[0]] > 0.9
+
+
+@pytest.mark.slow
+def test_a_rare_answer_is_not_sure_of_itself() -> None:
+    """Of 3 campaigns of noise in 60 that have an answer of their own, nothing foretells one."""
+    rng = np.random.default_rng(7)
+    found = [_example(rng, 2 * at) for at in range(60)]
+    rare = [
+        replace(one, right=("backlash",), stages=("drive",)) if at < 3 else one
+        for at, one in enumerate(found)
+    ]
+    model = Classifier.fitted(rare, "components")
+    shares = [
+        model.shares(_example(rng, 200 + 2 * at).features["components"])[0] for at in range(9)
+    ]
+    assert max(one["backlash"] for one in shares) < 0.2
+
+
+def test_a_campaign_that_is_told_counts_as_such() -> None:
+    """By hand: of two campaigns one is told at 0.5, the other is given 0.25 for its answer."""
+    rng = np.random.default_rng(8)
+    found = [_example(rng, 0), _example(rng, 1)]
+    said = [{"none": 0.5, "zero-offset": 0.3}, {"none": 0.75, "zero-offset": 0.25}]
+    loss = (np.log(2.0) + np.log(4.0)) / 2.0
+    assert scored(found, said) == f"right in 0.500 of 2, mean log loss {loss:.3f}"
 
 
 def test_only_the_cell_that_tells_is_important() -> None:
