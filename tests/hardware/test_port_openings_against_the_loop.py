@@ -9,25 +9,7 @@ from hardware.errors import PortOpenError, PortOpeningError, SilentPortError, Un
 from hardware.lines import LineKind
 from hardware.serial_port import PortSettings, SerialPort
 from tests.hardware.protocol_double import Serial
-from tests.hardware.rigs import Talker, open_rig
-
-
-@pytest.fixture
-def talker():
-    with Talker() as one:
-        yield one
-
-
-@pytest.fixture
-def cell(talker):
-    table = {"driver": "timestamper", "port": {"url": talker.url}, "silent_s": 1.0}
-    with open_rig({"photocell": table}) as rig:
-        yield rig
-
-
-def run(rig, count):
-    for _ in range(count):
-        rig.cycle()
+from tests.hardware.rigs import run
 
 
 class SlowServer:

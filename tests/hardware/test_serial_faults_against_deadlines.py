@@ -22,27 +22,9 @@ from hardware.errors import (
 from hardware.lines import TICK_MODULUS, LineKind, SerialLine, Unwrapped, decode, encode
 from hardware.photocell_serial import ClockFit
 from hardware.serial_port import PortSettings, SerialPort
-from tests.hardware.rigs import Talker, open_rig
+from tests.hardware.rigs import open_rig, run
 
 PERIOD_S = 0.01
-
-
-@pytest.fixture
-def talker():
-    with Talker() as one:
-        yield one
-
-
-@pytest.fixture
-def cell(talker):
-    table = {"driver": "timestamper", "port": {"url": talker.url}, "silent_s": 1.0}
-    with open_rig({"photocell": table}) as rig:
-        yield rig
-
-
-def run(rig, count):
-    for _ in range(count):
-        rig.cycle()
 
 
 def pulse(rig, talker, number, after):

@@ -4,27 +4,9 @@ import pytest
 
 from hardware.errors import HardwareError, PhotocellMissedError, UnpluggedError
 from hardware.lines import LineKind
-from tests.hardware.rigs import Talker, open_rig
+from tests.hardware.rigs import run
 
 PERIOD_S = 0.01
-
-
-@pytest.fixture
-def talker():
-    with Talker() as one:
-        yield one
-
-
-@pytest.fixture
-def cell(talker):
-    table = {"driver": "timestamper", "port": {"url": talker.url}, "silent_s": 1.0}
-    with open_rig({"photocell": table}) as rig:
-        yield rig
-
-
-def run(rig, count):
-    for _ in range(count):
-        rig.cycle()
 
 
 def turning(rig, talker, cycles, began_s, first=0):
