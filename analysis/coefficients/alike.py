@@ -3,9 +3,15 @@
 import math
 from collections.abc import Callable, Sequence
 from statistics import median_low
-from typing import TypeVar
+from typing import Final, TypeVar
 
 _Item = TypeVar("_Item")
+
+# Within these two runs count as set to the same.
+SAME_FREQUENCY: Final = 5e-3  # relative
+SAME_SPEED: Final = 1e-2  # relative, as far as a carriage may stray
+SLOWEST_M_S: Final = 0.01  # below, speeds are the same by what they would be at this one
+SAME_ANGLE_RAD: Final = 1e-3  # of drift, heel and rudder: 0.06 degrees
 
 
 def classes(

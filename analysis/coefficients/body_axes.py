@@ -22,6 +22,7 @@ from analysis.kinematics.motion import DrivenDisplacements
 from hardware.description.arrays import ComplexArray, FloatArray
 
 _AFT, _FORE = 0, 1
+GAUGES, SURGE_GAUGE = 2, 4  # among a strut cycle's channels: the first of them, and force_x
 _DRIVEN = ((0, 0), (1, 0), (0, 1), (1, 1), (0, 2), (1, 2))  # channel, times differentiated
 _GEOMETRY = ("half_spacing_m", "speed_m_s", "alignment_rad")
 
@@ -175,7 +176,7 @@ def _by_stated(
     """How the struts' phasors follow what is stated of displacements and gauges."""
     shaped = values.reshape(-1, channels)
     order = np.arange(len(shaped))
-    aft, fore = 2 + _AFT, 2 + _FORE
+    aft, fore = GAUGES + _AFT, GAUGES + _FORE
     later = 1j * omega * order
     moves: dict[str, dict[int, ComplexArray]] = {
         "amplitude_relative": {_AFT: shaped[:, _AFT], _FORE: shaped[:, _FORE]},
@@ -190,9 +191,8 @@ def _by_stated(
     }
     if asked:
         moves["latency_s"] = {_AFT: later * shaped[:, _AFT], _FORE: later * shaped[:, _FORE]}
-    surge = 4
-    if channels - len(roll) > surge:
-        moves["surge_gauge_relative"] = {surge: shaped[:, surge]}
+    if channels - len(roll) > SURGE_GAUGE:
+        moves["surge_gauge_relative"] = {SURGE_GAUGE: shaped[:, SURGE_GAUGE]}
     if ROLL_MOMENT in roll:
         place = channels - len(roll) + roll.index(ROLL_MOMENT)
         moves["roll_gauge_relative"] = {place: shaped[:, place]}

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Final
 
-from analysis.coefficients.alike import classes
+from analysis.coefficients.alike import SAME_FREQUENCY, SAME_SPEED, SLOWEST_M_S, classes
 from analysis.coefficients.body_cycle import DRY_TAKEN_OFF, BodyCycle
 from analysis.coefficients.cycle_checks import named_twice, other_geometry
 from analysis.coefficients.identifiability import fundamental_velocities, identifiable_motions
@@ -17,9 +17,6 @@ from hardware.description.errors import ConfigurationError
 from hardware.description.heel import RollConstraint
 from hardware.description.setpoint import Medium
 
-_SAME_FREQUENCY = 5e-3
-_SAME_SPEED = 1e-2
-_SLOWEST_M_S = 0.01  # below, speeds are the same by what they would be at this one
 _SAME_AMPLITUDE = 2e-2
 OWN_MODEL: Final = "own_model"  # flag of a run that was made with another model than the rest
 
@@ -157,7 +154,7 @@ def plan(
     groups = []
     every = [*cycles, *(run for run in line_runs if request.nonlinear)]
     for alike, speed in classes(
-        every, lambda run: run.speed_m_s, _SAME_SPEED, _SLOWEST_M_S * _SAME_SPEED
+        every, lambda run: run.speed_m_s, SAME_SPEED, SLOWEST_M_S * SAME_SPEED
     ):
         lined = [run for run in alike if run.lines]
         single = [run for run in alike if not run.lines]
@@ -165,7 +162,7 @@ def plan(
         if static:
             groups.append(Group(GroupKind.STATIC, tuple(static), speed, 0.0))
         moving = [cycle for cycle in single if cycle.frequency_hz > 0.0]
-        for together, hz in classes(moving, lambda run: run.frequency_hz, _SAME_FREQUENCY):
+        for together, hz in classes(moving, lambda run: run.frequency_hz, SAME_FREQUENCY):
             groups += [
                 Group(kind, runs, speed, hz) for kind, runs in _by_amplitude(together, request)
             ]

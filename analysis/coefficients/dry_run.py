@@ -6,6 +6,8 @@ from typing import Final
 
 import numpy as np
 
+from analysis.coefficients.alike import SAME_ANGLE_RAD, SAME_FREQUENCY
+from analysis.coefficients.body_axes import GAUGES, SURGE_GAUGE
 from analysis.coefficients.body_cycle import DRY_TAKEN_OFF, SURGE_FORCE, BodyCycle, at_order
 from analysis.coefficients.phasors import real_form
 from analysis.kinematics.body_frame import LOADS
@@ -15,10 +17,8 @@ from hardware.description.flags import Flag, Severity
 from hardware.description.oscillator import Plane
 from hardware.description.setpoint import Medium
 
-_SAME_FREQUENCY: Final = 5e-3
 _SAME_MOTION: Final = 1e-2
 _SAME_SIZE: Final = 0.1
-_SAME_ANGLE_RAD: Final = 1e-3
 
 
 def without_dry(wet: BodyCycle, dry: BodyCycle) -> BodyCycle:
@@ -57,11 +57,16 @@ def without_dry(wet: BodyCycle, dry: BodyCycle) -> BodyCycle:
     )
 
 
+def _has_all(order: int, wet: BodyCycle) -> bool:
+    """Whether all loads are taken off at an order; of the vertical means it is that of X alone."""
+    return order > 0 or wet.plane is Plane.HORIZONTAL
+
+
 def _scale(wet: BodyCycle, dry: BodyCycle, factors: dict[int, complex]) -> ComplexArray:
     scale = np.zeros((len(wet.phasors.names), len(dry.phasors.names)), dtype=np.complex128)
     both = [name for name in LOADS if name in wet.channels and name in dry.channels]
     for n, factor in factors.items():
-        for name in both if n or wet.plane is Plane.HORIZONTAL else {SURGE_FORCE} & {*both}:
+        for name in both if _has_all(n, wet) else {SURGE_FORCE} & {*both}:
             place = wet.phasors.index(at_order(name, n))
             scale[place, dry.phasors.index(at_order(name, n))] = factor
     return scale
@@ -71,7 +76,7 @@ def _readings(wet: BodyCycle, dry: BodyCycle, factors: dict[int, complex]) -> Co
     """Return what the gauges read, less the dry run's; displacements stay."""
     readings = wet.readings.copy()
     for n, factor in factors.items() if len(readings) and len(dry.readings) else ():
-        gauges = slice(2 if n or wet.plane is Plane.HORIZONTAL else 4, dry.readings.shape[1])
+        gauges = slice(GAUGES if _has_all(n, wet) else SURGE_GAUGE, dry.readings.shape[1])
         readings[n, gauges] -= factor * dry.readings[n, gauges]
     return readings
 
@@ -117,7 +122,7 @@ def _other_runs(wet: BodyCycle, dry: BodyCycle) -> Iterator[str]:
         yield "the body's inertia is taken off as well"
     if dry.plane is not wet.plane:
         yield "its plane is another"
-    if abs(dry.frequency_hz / wet.frequency_hz - 1.0) > _SAME_FREQUENCY:
+    if abs(dry.frequency_hz / wet.frequency_hz - 1.0) > SAME_FREQUENCY:
         yield f"it ran at {dry.frequency_hz:g} Hz, not {wet.frequency_hz:g} Hz"
 
 
@@ -127,9 +132,9 @@ def _other_angles(wet: BodyCycle, dry: BodyCycle) -> Iterator[str]:
         "heel": (wet.heel_rad, dry.heel_rad),
     }
     for word, (own, other) in angles.items():
-        if abs(own - other) > _SAME_ANGLE_RAD:
+        if abs(own - other) > SAME_ANGLE_RAD:
             yield f"its {word} is {other:g} rad, not {own:g} rad"
-    if wet.plane is Plane.VERTICAL and abs(wet.drift_rad) > _SAME_ANGLE_RAD:
+    if wet.plane is Plane.VERTICAL and abs(wet.drift_rad) > SAME_ANGLE_RAD:
         yield (
             "at a trim the model's weight swings in its loads, which the water bears of one that "
             "floats; give the inertia ([model])"

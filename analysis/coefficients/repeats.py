@@ -11,6 +11,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from analysis.coefficients.alike import (
+    SAME_ANGLE_RAD,
+    SAME_FREQUENCY,
+    SAME_SPEED,
+    SLOWEST_M_S,
+)
 from analysis.coefficients.body_cycle import LOADS, BodyCycle, at_order
 from analysis.coefficients.campaign_records import Outlier
 from analysis.coefficients.phasors import Phasors, from_interleaved, parts_of
@@ -18,9 +24,7 @@ from analysis.uncertainty.freedom import effective_freedom, student_factor
 from analysis.uncertainty.values import Contribution, UncertainValues
 from hardware.description.arrays import ComplexArray, FloatArray
 
-_SAME_FREQUENCY = 5e-3
 _SAME_MOTION = 2e-2
-_SAME_ANGLE_RAD = 1e-3
 _CHANCE = 0.01  # that any run of a good campaign is named
 
 
@@ -168,12 +172,14 @@ def _ratio(first: BodyCycle, second: BodyCycle) -> complex:
 
 
 def _is_same_motion(first: BodyCycle, second: BodyCycle) -> bool:
-    if abs(second.frequency_hz - first.frequency_hz) > _SAME_FREQUENCY * first.frequency_hz:
+    if abs(second.frequency_hz - first.frequency_hz) > SAME_FREQUENCY * first.frequency_hz:
         return False
-    if abs(second.speed_m_s - first.speed_m_s) > 1e-2 * max(abs(first.speed_m_s), 0.01):
+    if abs(second.speed_m_s - first.speed_m_s) > SAME_SPEED * max(
+        abs(first.speed_m_s), SLOWEST_M_S
+    ):
         return False
     for angle in ("drift_rad", "heel_rad", "rudder_rad"):
-        if abs(getattr(second, angle) - getattr(first, angle)) > _SAME_ANGLE_RAD:
+        if abs(getattr(second, angle) - getattr(first, angle)) > SAME_ANGLE_RAD:
             return False
     ratio = _ratio(first, second)
     deviation = np.abs(second.at_struts - ratio * first.at_struts).max()

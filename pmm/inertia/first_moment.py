@@ -55,6 +55,8 @@ def _scaled(table: StateTable, static: StaticResult) -> Estimate:
     by_scale = by_levers.widened(
         moment.value * table.u_tilt_relative, label="scale of the inclinometer"
     )
+    if not any(lever.u_drop_m for lever in table.levers):
+        return by_scale
     deeper = _tilts(table, 1.0).pooled.moment.value - moment.value
     drops = ", ".join(sorted(f"{lever.name} of {lever.drop_m:g} m" for lever in table.levers))
     return by_scale.widened(deeper, label=f"drops {drops}")
