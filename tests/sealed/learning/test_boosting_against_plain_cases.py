@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from sim.effects.catalogue import catalogue
 from tests.sealed.learning.boosted import Classifier, importance
 from tests.sealed.learning.features import of_components
 from tests.sealed.learning.training import Example
-from tests.sealed.learning.validation import scored
+from tests.sealed.learning.validation import by_effect, scored
 
 pytest.importorskip("sklearn", reason="optional dependency peers")
 
@@ -62,6 +63,28 @@ def test_a_campaign_that_is_told_counts_as_such() -> None:
     said = [{"none": 0.5, "zero-offset": 0.3}, {"none": 0.75, "zero-offset": 0.25}]
     loss = (np.log(2.0) + np.log(4.0)) / 2.0
     assert scored(found, said) == f"right in 0.500 of 2, mean log loss {loss:.3f}"
+
+
+def test_a_pair_that_is_named_counts_for_both_of_its_effects() -> None:
+    """By hand: what a row that cannot say pairs would have to say to mean the same."""
+    names = catalogue().keys() - {"added-mass-error", "damping-error"}
+    seen = dict.fromkeys(names, 0.0) | {"none": 0.2, "hum": 0.1, "cable+hum": 0.7}
+    assert by_effect(seen) == pytest.approx({"none": 0.2, "hum": 0.45, "cable": 0.35})
+
+
+def test_an_effect_that_does_not_show_has_its_part_of_none() -> None:
+    """By hand: of prior odds 0.6 for none, and 0.6 for effects half of which do not show.
+
+    Those are singles, and pairs of them by half: 0.6 times 0.5 times (1 + 0.5 times 0.5) = 0.375.
+    """
+    names = sorted(catalogue().keys() - {"added-mass-error", "damping-error"})
+    assert len(names) % 2 == 0
+    shown = dict.fromkeys(names[::2], 0.0) | {"none": 0.975, "unknown": 0.025}
+    found = by_effect(shown)
+    assert found["none"] == pytest.approx(0.6)
+    assert [found[name] for name in names[1::2]] == pytest.approx(
+        [0.75 / len(names)] * (len(names) // 2)
+    )
 
 
 def test_only_the_cell_that_tells_is_important() -> None:
