@@ -14,6 +14,26 @@ SLOWEST_M_S: Final = 0.01  # below, speeds are the same by what they would be at
 SAME_ANGLE_RAD: Final = 1e-3  # of drift, heel and rudder: 0.06 degrees
 
 
+def is_same_speed(first_m_s: float, second_m_s: float) -> bool:
+    """Return whether two runs count as set to the same carriage speed."""
+    slack = SAME_SPEED * max(abs(first_m_s), SLOWEST_M_S)
+    return abs(second_m_s - first_m_s) <= slack
+
+
+def speed_classes(
+    items: Sequence[_Item], speed_m_s_of: Callable[[_Item], float]
+) -> list[tuple[tuple[_Item, ...], float]]:
+    """Return the items of one speed, each once, with the median speed; rising."""
+    return classes(items, speed_m_s_of, SAME_SPEED, SAME_SPEED * SLOWEST_M_S)
+
+
+def frequency_classes(
+    items: Sequence[_Item], frequency_hz_of: Callable[[_Item], float]
+) -> list[tuple[tuple[_Item, ...], float]]:
+    """Return the items of one frequency, each once, with the median frequency; rising."""
+    return classes(items, frequency_hz_of, SAME_FREQUENCY)
+
+
 def classes(
     items: Sequence[_Item],
     value_of: Callable[[_Item], float],

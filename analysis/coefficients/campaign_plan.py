@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Final
 
-from analysis.coefficients.alike import SAME_FREQUENCY, SAME_SPEED, SLOWEST_M_S, classes
+from analysis.coefficients.alike import classes, frequency_classes, speed_classes
 from analysis.coefficients.body_cycle import DRY_TAKEN_OFF, BodyCycle
 from analysis.coefficients.cycle_checks import named_twice, other_geometry
 from analysis.coefficients.identifiability import fundamental_velocities, identifiable_motions
@@ -153,16 +153,14 @@ def plan(
     """
     groups = []
     every = [*cycles, *(run for run in line_runs if request.nonlinear)]
-    for alike, speed in classes(
-        every, lambda run: run.speed_m_s, SAME_SPEED, SLOWEST_M_S * SAME_SPEED
-    ):
+    for alike, speed in speed_classes(every, lambda run: run.speed_m_s):
         lined = [run for run in alike if run.lines]
         single = [run for run in alike if not run.lines]
         static = [cycle for cycle in single if cycle.frequency_hz == 0.0]
         if static:
             groups.append(Group(GroupKind.STATIC, tuple(static), speed, 0.0))
         moving = [cycle for cycle in single if cycle.frequency_hz > 0.0]
-        for together, hz in classes(moving, lambda run: run.frequency_hz, SAME_FREQUENCY):
+        for together, hz in frequency_classes(moving, lambda run: run.frequency_hz):
             groups += [
                 Group(kind, runs, speed, hz) for kind, runs in _by_amplitude(together, request)
             ]

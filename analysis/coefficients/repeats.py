@@ -11,12 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from analysis.coefficients.alike import (
-    SAME_ANGLE_RAD,
-    SAME_FREQUENCY,
-    SAME_SPEED,
-    SLOWEST_M_S,
-)
+from analysis.coefficients.alike import SAME_ANGLE_RAD, SAME_FREQUENCY, is_same_speed
 from analysis.coefficients.body_cycle import LOADS, BodyCycle, at_order
 from analysis.coefficients.campaign_records import Outlier
 from analysis.coefficients.phasors import Phasors, from_interleaved, parts_of
@@ -174,9 +169,7 @@ def _ratio(first: BodyCycle, second: BodyCycle) -> complex:
 def _is_same_motion(first: BodyCycle, second: BodyCycle) -> bool:
     if abs(second.frequency_hz - first.frequency_hz) > SAME_FREQUENCY * first.frequency_hz:
         return False
-    if abs(second.speed_m_s - first.speed_m_s) > SAME_SPEED * max(
-        abs(first.speed_m_s), SLOWEST_M_S
-    ):
+    if not is_same_speed(first.speed_m_s, second.speed_m_s):
         return False
     for angle in ("drift_rad", "heel_rad", "rudder_rad"):
         if abs(getattr(second, angle) - getattr(first, angle)) > SAME_ANGLE_RAD:

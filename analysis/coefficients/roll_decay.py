@@ -13,6 +13,7 @@ from typing import Final
 
 import numpy as np
 
+from analysis.coefficients.alike import is_same_speed
 from analysis.coefficients.campaign_records import ROLL_DECAY, CoefficientEntry
 from analysis.coefficients.campaign_result import CampaignCoefficients, TrialColumns
 from analysis.kinematics.complex_step import pointwise
@@ -24,7 +25,6 @@ from hardware.description.heel import Heel
 
 NAMES: Final = ("K_p", "K_pdot")
 _UNITS: Final = ("N m s", "kg m2")
-_SAME_M_S: Final = 1e-3
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ def _of_decay(
     rows = [
         k
         for k in coefficients.rows("K_phi")
-        if abs(coefficients.entries[k].speed_m_s - decay.speed_m_s) <= _SAME_M_S
+        if is_same_speed(coefficients.entries[k].speed_m_s, decay.speed_m_s)
     ]
     flow = coefficients.uncertain.select(rows[:1])
     k_phi = float(flow.values[0]) if rows else 0.0

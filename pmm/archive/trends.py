@@ -9,14 +9,12 @@ from typing import Final
 
 import numpy as np
 
-from analysis.coefficients.alike import classes
+from analysis.coefficients.alike import frequency_classes, speed_classes
 from hardware.description.errors import DataError
 from pmm.archive.queries import Row, rows_of, the_run, what_is_there
 from pmm.archive.repeats import settings_alike
 
 FEWEST = 3  # campaigns: two others tell a scatter
-_SAME_SPEED_M_S: Final = 1e-3
-_SAME_FREQUENCY_HZ: Final = 1e-4
 _PARTS: Final = {"in_phase": "in phase", "quadrature": "quadrature"}
 # CROSS: the runs come first.
 _REPEATS: Final = """
@@ -109,7 +107,7 @@ def coefficient_trends(
 ) -> tuple[Trend, ...]:
     """Return a coefficient's values, earliest first, a trend for what can be compared.
 
-    Speeds are the same within 1 mm/s of the lowest, frequencies within 0.1 mHz.
+    Speeds and frequencies are the same as in a campaign (:mod:`analysis.coefficients.alike`).
 
     Raises
     ------
@@ -135,8 +133,8 @@ def coefficient_trends(
     return tuple(
         _trend(name, alike, probability)
         for _, group in sorted(groups.items())
-        for at_speed, _ in classes(group, _value_of("speed_m_s"), 0.0, _SAME_SPEED_M_S)
-        for alike, _ in classes(at_speed, _value_of("frequency_hz"), 0.0, _SAME_FREQUENCY_HZ)
+        for at_speed, _ in speed_classes(group, _value_of("speed_m_s"))
+        for alike, _ in frequency_classes(at_speed, _value_of("frequency_hz"))
     )
 
 

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from analysis.coefficients.alike import is_same_speed, speed_classes
 from analysis.coefficients.roll_decay import RollDecay
 from analysis.inertia.damping import small_damping_of
 from analysis.inertia.record import RecordAnalysis, analyse_record, from_runs
@@ -20,8 +21,6 @@ from pmm.campaign.runs import AtRest
 from pmm.coefficients.settings import CoefficientSettings
 from pmm.coefficients.tasks import FailedRecording
 
-_SAME_M_S = 1e-3
-
 
 @dataclass(frozen=True, eq=False)
 class Decay:
@@ -29,21 +28,19 @@ class Decay:
 
     Attributes
     ----------
+    speed_m_s
+        At which the model was towed, the median of the runs.
     records
         One for each run, in their order.
     period, ratio
         Damped period, s, and the share of critical damping, of small rolls.
     """
 
+    speed_m_s: float
     runs: tuple[AtRest, ...]
     records: tuple[RecordAnalysis, ...]
     period: Estimate
     ratio: Estimate
-
-    @property
-    def speed_m_s(self) -> float:
-        """At which the model was towed."""
-        return self.runs[0].carriage_speed_m_s
 
     @property
     def flags(self) -> tuple[Flag, ...]:
@@ -56,7 +53,7 @@ def decays_of(
     campaign: Campaign, folder: Path, leave_out: Sequence[str] = ()
 ) -> tuple[tuple[Decay, ...], tuple[FailedRecording, ...]]:
     """Return a campaign's free decays by speed, and the records that could not be used."""
-    groups: dict[float, list[tuple[AtRest, RecordAnalysis]]] = {}
+    pairs: list[tuple[AtRest, RecordAnalysis]] = []
     failures = []
     for record in campaign.at_rest:
         is_used = record.outcome == COMPLETE and record.name not in leave_out
@@ -64,19 +61,19 @@ def decays_of(
             source = RecordingSource.of(campaign, record, folder.resolve())
             try:
                 series = series_from_recording(open_recording(source), HEEL_ANGLE.name)
-                pair = record, analyse_record(replace(series, name=record.name))
-                groups.setdefault(round(record.carriage_speed_m_s / _SAME_M_S), []).append(pair)
+                pairs.append((record, analyse_record(replace(series, name=record.name))))
             except PmmError as error:
                 failures.append(
                     FailedRecording(record.name, str(source.path), str(error), error.exit_status)
                 )
-    return tuple(_joined(group) for group in groups.values()), tuple(failures)
+    groups = speed_classes(pairs, lambda pair: pair[0].carriage_speed_m_s)
+    return tuple(_joined(group, speed) for group, speed in groups), tuple(failures)
 
 
-def _joined(pairs: Sequence[tuple[AtRest, RecordAnalysis]]) -> Decay:
+def _joined(pairs: Sequence[tuple[AtRest, RecordAnalysis]], speed_m_s: float) -> Decay:
     """Join the records of one speed, at the amplitudes at which GM is what rights the model."""
     runs, records = zip(*pairs, strict=True)
-    return Decay(runs, records, from_runs(records).estimate, small_damping_of(records))
+    return Decay(speed_m_s, runs, records, from_runs(records).estimate, small_damping_of(records))
 
 
 def with_recorded(
@@ -87,8 +84,12 @@ def with_recorded(
     A decay of a speed that the settings have one of themselves is theirs. Without metacentric
     height and inertia nothing follows but period and damping ratio, and a flag says so.
     """
-    stated = {round(decay.speed_m_s / _SAME_M_S) for decay in settings.roll_decays}
-    new_decays = [decay for decay in decays if round(decay.speed_m_s / _SAME_M_S) not in stated]
+    stated = [decay.speed_m_s for decay in settings.roll_decays]
+    new_decays = [
+        decay
+        for decay in decays
+        if not any(is_same_speed(speed, decay.speed_m_s) for speed in stated)
+    ]
     if new_decays and (heel is None or heel.gm_m is None or heel.inertia_kg_m2 is None):
         text = (
             "free decays: period and damping ratio alone; state gm_m and inertia_kg_m2 in [heel] "

@@ -23,7 +23,7 @@ K_P, K_PDOT, K_PHI, U_K_PHI = -0.7, -0.9, -0.65, 0.03
 
 
 def campaign() -> CampaignCoefficients:
-    """K_phi at 1.2 m/s, with its uncertainty."""
+    """K_phi at 1.2 m/s, the median of its runs, with its uncertainty."""
     entry = CoefficientEntry("K_phi", "N m", "static drift", 0.0, 1.2, 0, 0, ("a",), 1.0, 1.0)
     scatter = Contribution("scatter", np.inf, np.arange(1), np.array([[U_K_PHI]]))
     values = UncertainValues(np.array([K_PHI]), (scatter,))
@@ -54,8 +54,8 @@ def decay(k_phi: float, speed_m_s: float) -> RollDecay:
 
 
 def test_a_decay_tells_damping_and_added_inertia() -> None:
-    found = with_decays(campaign(), [decay(0.0, 0.0), decay(K_PHI, 1.2)], HEEL, BODY)
-    for speed in (0.0, 1.2):
+    found = with_decays(campaign(), [decay(0.0, 0.0), decay(K_PHI, 1.206)], HEEL, BODY)
+    for speed in (0.0, 1.206):
         for name, value in (("K_p", K_P), ("K_pdot", K_PDOT)):
             (row,) = found.rows(name, method=ROLL_DECAY, speed_m_s=speed)
             assert found.values[row] == pytest.approx(value, rel=1e-5), (name, speed)

@@ -8,7 +8,9 @@ import pytest
 from click.testing import CliRunner
 from scipy.integrate import solve_ivp
 
+from pmm.campaign.campaign_file import read_campaign
 from pmm.cli import cli
+from pmm.coefficients.decays import decays_of
 from tests.pmm.coefficients.test_circles_against_newton import written
 
 MASS_KG, INERTIA_KG_M2, GM_M, BM_M, GRAVITY = 60.0, 4.6, 0.02, 0.115, 9.80665
@@ -103,6 +105,22 @@ def test_damping_and_added_inertia_come_back_and_gm_is_in_their_budget(folder: P
     stated = {one["name"]: one for one in coefficients(folder)["recommended"]}
     # K_pdot = I - m g GM / w0^2: 1 % of GM is 1 % of I - K_pdot.
     assert stated["K_pdot"]["standard_uncertainty"] == pytest.approx(0.055, rel=0.05)
+
+
+def test_decays_that_were_towed_as_fast_are_joined(folder: Path) -> None:
+    """A carriage that is set to 1 m/s is measured within 1 % of that; 1.05 m/s is another speed."""
+    path = folder / "campaign.toml"
+    text = path.read_text()
+    for k, speed in enumerate((1.05, 1.0, 1.006)):
+        file = f'file = "decay-{k}.csv"\n'
+        text = text.replace(file, f"{file}carriage_speed_m_s = {speed}\n")
+    path.write_text(text, encoding="utf-8")
+    found, failures = decays_of(read_campaign(path), folder)
+    assert failures == ()
+    assert [(one.speed_m_s, [run.name for run in one.runs]) for one in found] == [
+        (1.0, ["decay-1", "decay-2"]),
+        (1.05, ["decay-0"]),
+    ]
 
 
 def test_without_stability_period_and_damping_are_all_that_is_told(folder: Path) -> None:
