@@ -17,7 +17,6 @@ from analysis.coefficients.steady_turns import SteadyTurn
 from analysis.coefficients.tows import Tow, tow_of
 from hardware.description.errors import PmmError
 from hardware.description.kinds import RunKind
-from hardware.description.oscillator import Oscillator
 from pmm.campaign.campaign import Campaign
 from pmm.campaign.water import TankWater
 from pmm.coefficients.decays import Decay, decays_of
@@ -93,7 +92,7 @@ def in_water(campaign: Campaign, folder: Path) -> InWater:
         if not isinstance(zero, FailedRecording) and zero.zero
     }
     failed = [_with_run_name(zero) for zero in zeros if isinstance(zero, FailedRecording)]
-    results = _WaterTestCollector(campaign, oscillator, settings, failed)
+    results = _WaterTestCollector(campaign, settings, failed)
     for task in tasks:
         results.take(task.with_zeros(zeros_by_name))
     decays, torn = decays_of(campaign, folder)
@@ -116,11 +115,10 @@ class _WaterTestCollector:
     def __init__(
         self,
         campaign: Campaign,
-        oscillator: Oscillator,
         settings: CoefficientSettings,
         failed: list[FailedRecording],
     ) -> None:
-        self._campaign, self._oscillator, self._failed = campaign, oscillator, failed
+        self._campaign, self._failed = campaign, failed
         self._settings = settings
         self._towed: list[ReadRecording] = []
         self.restoring: list[Restoring] = []

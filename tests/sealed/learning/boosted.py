@@ -1,7 +1,7 @@
 """An amortised classifier: gradient boosting on features of campaigns, as a row of a board."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
@@ -105,20 +105,22 @@ def _by_name(model: Any, row: FloatArray) -> dict[str, float]:
 
 
 def importance(
-    model: Any, matrix: FloatArray, right: Sequence[str], groups: Mapping[str, Sequence[int]],
-    rng: np.random.Generator,
-) -> dict[str, float]:  # fmt: skip
-    """Return by how much the share of right answers falls when a group of features is shuffled.
+    model: Any, matrix: FloatArray, right: Sequence[Collection[str]],
+    groups: Mapping[str, Sequence[int]], rng: np.random.Generator,
+) -> dict[str, FloatArray]:  # fmt: skip
+    """Return of each campaign whether it is told right no longer when a group is shuffled.
 
-    Breiman (2001), over groups of columns that are shuffled together, largest first.
+    Breiman (2001), over groups of columns that are shuffled together: 1 where it was right and is
+    no longer, -1 where it is only then, else 0; shape ``(campaigns,)``.
     """
 
-    def reached(values: FloatArray) -> float:
-        return float(np.mean(model.predict(values) == np.asarray(right)))
+    def reached(values: FloatArray) -> FloatArray:
+        said = model.predict(values)
+        return np.array([float(one in names) for one, names in zip(said, right, strict=True)])
 
     whole, falls = reached(matrix), {}
     for name, columns in groups.items():
         shuffled = matrix.copy()
         shuffled[:, columns] = matrix[rng.permutation(len(matrix))][:, columns]
         falls[name] = whole - reached(shuffled)
-    return dict(sorted(falls.items(), key=lambda one: -one[1]))
+    return falls

@@ -92,9 +92,9 @@ def test_only_the_cell_that_tells_is_important() -> None:
     from sklearn.tree import DecisionTreeClassifier
 
     rng = np.random.default_rng(6)
-    right = ["a", "b"] * 200
+    right = [("a",), ("b",)] * 200
     matrix = np.column_stack([np.array([0.0, 1.0] * 200), rng.standard_normal(400)])
-    model = DecisionTreeClassifier(max_depth=1, random_state=0).fit(matrix, right)
+    model = DecisionTreeClassifier(max_depth=1, random_state=0).fit(matrix, ["a", "b"] * 200)
     falls = importance(model, matrix, right, {"telling": [0], "other": [1]}, rng)
-    assert falls["telling"] == pytest.approx(0.5, abs=0.08)
-    assert falls["other"] == 0.0
+    assert falls["telling"].mean() == pytest.approx(0.5, abs=0.08)
+    assert not falls["other"].any()
