@@ -79,27 +79,33 @@ def _beside_rows(lines: Sequence[Line]) -> Iterator[Row]:
 
 
 def _same(lines: Sequence[Line], again: Sequence[Line]) -> str:
-    """Say in how many cases another board's diagnosis has the marks of the worlds' lines."""
-    marks = {(one["campaign"], one["seed"]): one for one in lines}
+    """Say in how many cases another board's diagnosis has the marks of the worlds' lines.
+
+    How probable its answer is may differ a little: another machine sums in another order.
+    """
+    there = {(one["campaign"], one["seed"]): one for one in lines}
+    keys = [(one["campaign"], one["seed"]) for one in again]
     pairs = [
-        (marks[key], one["rows"][DIAGNOSIS])
-        for one in again
-        if (key := (one["campaign"], one["seed"])) in marks
+        (there[key], one["rows"][DIAGNOSIS])
+        for key, one in zip(keys, again, strict=True)
+        if key in there
     ]
     same = sum(
-        _agree(whole["stated"], other["stated"])
-        and all(_agree(whole["values"][key], other["values"][key]) for key in whole["values"])
+        all(np.array_equal(whole["values"][key], other["values"][key]) for key in whole["values"])
         for whole, other in pairs
     )
-    told = f"{same} of {len(pairs)} cases"
-    return f"The diagnosis has the marks of the worlds' lines, to twelve digits, in {told}."
-
-
-def _agree(one: Sequence[float] | None, other: Sequence[float] | None) -> bool:
-    """Tell whether marks agree but for the order in which they were summed."""
-    if one is None or other is None:
-        return one is other
-    return len(one) == len(other) and bool(np.allclose(one, other, rtol=1e-12, atol=0.0))
+    apart = max(
+        (
+            abs(one - two)
+            for whole, other in pairs
+            for one, two in zip(whole["stated"] or (), other["stated"] or (), strict=True)
+        ),
+        default=0.0,
+    )
+    return (
+        f"The diagnosis has the marks of the worlds' lines in {same} of {len(pairs)} cases, "
+        f"its probabilities within {apart:.1g}."
+    )
 
 
 def _trained(learned: Sequence[Line]) -> str:
