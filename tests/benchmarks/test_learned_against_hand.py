@@ -63,14 +63,16 @@ def test_figures_of_each_row_are_those_by_hand() -> None:
 def test_the_note_counts_whose_marks_are_those_of_the_worlds() -> None:
     learned = [_line(1.0, boosted=0.0) | {"seed": seed} for seed in range(3)]
     own = learned[0]["rows"]["diagnosis"]
-    other = own | {"stated": [0.5, 1.0]}
+    stated = own["stated"][0]
+    other = own | {"values": own["values"] | {"unknown": [0.25]}}
+    near = own | {"stated": [stated - 0.125, own["stated"][1]]}
     worlds = [
         {"campaign": "A", "seed": seed, "frozen": "2b", **mark}
-        for seed, mark in enumerate((own, own, other))
+        for seed, mark in enumerate((own, near, other))
     ]
     found = counted(worlds, (), learned)
     assert "trained on 7 campaigns" in found.notes[-1]
-    assert "in 2 of 3 cases" in found.notes[-1]
+    assert "in 2 of 3 cases, its probabilities within 0.1." in found.notes[-1]
     assert [row["row"] for row in found.tables["Rows that learn"]] == list(ROWS)
 
 

@@ -4,8 +4,6 @@ import hashlib
 import json
 import os
 import shutil
-import sqlite3
-from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +16,6 @@ from pmm.archive.database import open_archive
 from pmm.archive.notebook import NoteLine, read_notes, write_note
 from pmm.archive.queries import campaigns
 from pmm.archive.results import AnalysedCampaign, Analyses, GapVerdict
-from pmm.archive.trends import coefficient_trends
 from pmm.cli import cli
 from tests.pmm.archive.one_folder import add_folder
 from tests.pmm.coefficients.campaigns import vertical_campaign
@@ -154,21 +151,6 @@ def test_a_trend_has_what_was_put_in(file: Path, tmp_path: Path) -> None:
         assert one["low"] is None
     done = job("trend", "Z_x", "--archive", file, status=1)
     assert "no coefficient 'Z_x'; did you mean 'Z_w'?" in done.stderr
-
-
-@pytest.mark.slow
-def test_what_was_towed_as_fast_by_its_own_measurement_is_one_trend(
-    file: Path, tmp_path: Path
-) -> None:
-    """1 m/s and 0.35 Hz as measured: 0.6 % and 0.3 % apart, and then 2 %."""
-    archive = shutil.copy(file, tmp_path / "towed.sqlite")
-    for speed, expected in ((1.006, 1), (1.02, 2)):
-        with closing(sqlite3.connect(archive)) as connection, connection:
-            sets = "UPDATE coefficients SET speed_m_s = ?, frequency_hz = ? WHERE campaign = ?"
-            connection.executemany(sets, [(1.0, 0.35, 1), (speed, 0.351, 2)])
-            connection.execute("UPDATE campaigns SET hull = 'KVLCC2'")
-            connection.row_factory = sqlite3.Row
-            assert len(coefficient_trends(connection, "Z_w", 0.99)) == expected
 
 
 @pytest.mark.slow
