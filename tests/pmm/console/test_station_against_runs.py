@@ -91,6 +91,14 @@ class Shown:
             self.station.step()
         raise AssertionError(f"still {self.station.control.state}: {self.heard.notices('alarm')}")
 
+    def must_start(self, run: str) -> None:
+        """Start, and demand that it is this run; then stop at once."""
+        assert self.order(OrderKind.COMMAND, "start").carried_out
+        self.until(State.GATE_OPEN)
+        assert self.station.control.status().run == run
+        self.quick_stop.press()
+        self.until(State.STOPPED)
+
 
 @contextmanager
 def _shown(folder: Path, executor: Executor | None = None) -> Iterator[Shown]:
@@ -224,11 +232,7 @@ def test_a_plan_that_is_queued_when_all_is_done_moves_nothing_before_start(tmp_p
         for _ in range(300):
             one.station.step()
         assert one.station.at_rest
-        assert one.order(OrderKind.COMMAND, "start").carried_out
-        one.until(State.GATE_OPEN)
-        assert one.station.control.status().run == "b"
-        one.quick_stop.press()
-        one.until(State.STOPPED)
+        one.must_start("b")
 
 
 def test_it_is_at_rest_once_the_stopped_runs_recording_is_complete(tmp_path: Path) -> None:
@@ -265,11 +269,7 @@ def test_a_plan_behind_a_stopped_one_waits_for_the_operator(tmp_path: Path) -> N
         for _ in range(1000):
             one.station.step()
         assert one.station.control.state in (State.STOPPED, State.IDLE)
-        assert one.order(OrderKind.COMMAND, "start").carried_out
-        one.until(State.GATE_OPEN)
-        assert one.station.control.status().run == "b"
-        one.quick_stop.press()
-        one.until(State.STOPPED)
+        one.must_start("b")
 
 
 def test_a_fault_stays_until_its_reset_and_the_plan_behind_it_is_taken_then(
@@ -298,11 +298,7 @@ def test_a_fault_stays_until_its_reset_and_the_plan_behind_it_is_taken_then(
             one.station.step()
         assert one.station.control.state is State.IDLE  # nothing goes on by itself
         assert one.station._plans.number == 2
-        assert one.order(OrderKind.COMMAND, "start").carried_out
-        one.until(State.GATE_OPEN)
-        assert one.station.control.status().run == "b"
-        one.quick_stop.press()
-        one.until(State.STOPPED)
+        one.must_start("b")
 
 
 def test_a_fault_at_rest_stays_when_a_plan_is_queued_behind_it(tmp_path: Path) -> None:
