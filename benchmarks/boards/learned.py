@@ -1,7 +1,7 @@
 """Rows that learn, on a world's first cases: boosted ones, and the diagnosis calibrated by others.
 
-Marks alone are kept, those of the diagnosis that made the hypotheses too: where they are those of
-:mod:`benchmarks.boards.worlds`, it is the same diagnosis.
+They answer what :mod:`benchmarks.boards.seen` has kept of the cases. The diagnosis that made the
+hypotheses is marked too: where it has the marks of :mod:`benchmarks.boards.worlds`, it is the same.
 """
 
 import json
@@ -14,15 +14,14 @@ from pathlib import Path
 from typing import Any, Final
 
 from analysis.gap.inference.constants import ODDS
-from benchmarks.boards.beside import ask, marks_by_row
+from benchmarks.boards.beside import marks_by_row
 from benchmarks.boards.row_figures import row_means
-from benchmarks.boards.worlds import made
 from pmm.gap.answer import SCHEMA as ANSWER_SCHEMA
-from tests.sealed.answering import DIAGNOSIS
+from tests.sealed.answering import DIAGNOSIS, Asked
 from tests.sealed.learning.boosted import classifier
 from tests.sealed.learning.calibration import Conformal, Isotonic
 from tests.sealed.learning.campaigns import LOOKS
-from tests.sealed.learning.rows import boosted, with_shares
+from tests.sealed.learning.rows import with_shares
 from tests.sealed.scoring.answers import NONE, VERDICTS, Answer
 from tests.sealed.scoring.by_world import Figure, Marks, figures_of
 from tests.sealed.scoring.keys import Truth, read_truth
@@ -36,13 +35,13 @@ CALIBRATED: Final = (f"{DIAGNOSIS}-isotonic", f"{DIAGNOSIS}-conformal")
 ROWS: Final = (DIAGNOSIS, *_BOOSTED, *CALIBRATED)
 
 
-def answered(world: str, index: int, commit: str, size: int, training: Path) -> Line:
-    """Make a case, have it answered by the rows that learn, and return the marks.
+def answered(seen: Line, training: Path) -> Line:
+    """Have a case answered by the rows that learn, and return the marks.
 
     Parameters
     ----------
-    index, commit, size
-        As in :func:`benchmarks.boards.beside.compared`.
+    seen
+        A line of :mod:`benchmarks.boards.seen`.
     training
         Campaigns that ``python -m tests.sealed.learning keep`` has written.
 
@@ -55,23 +54,31 @@ def answered(world: str, index: int, commit: str, size: int, training: Path) -> 
 
     began = time.process_time()
     with scratch() as folder:
-        name = made(world, index, commit, size, folder)
-        ask(folder, name, (DIAGNOSIS,))
-        for look in LOOKS:
-            for said in boosted(folder, training, look)[1]:
-                if "Error" in said:
-                    print(world, index, said, flush=True)
-        found = json.loads((folder / "answers" / f"{name}.json").read_text())
-        for row, fit in _calibrators().items():
-            room = folder / f"answers-{row}"
-            room.mkdir()
-            (room / f"{name}.json").write_text(json.dumps(with_shares(found, fit)))
-        truth = read_truth(folder / "keys" / name / "truth.json")
+        truth = read_truth(_written(seen["key"], folder / "truth.json"))
+        for row, found in _answers(seen, training):
+            _written(found, Asked(folder, truth.case, (row,)).target(row))
         rows = dict(marks_by_row(folder, truth, ROWS))
-    line = {"campaign": world, "seed": index, "frozen": commit, "rows": rows}
+    line = {key: seen[key] for key in ("campaign", "seed", "frozen")} | {"rows": rows}
     line |= {"counts": BINS[-1].holds(truth), "verdict": truth.verdict}
     line["trained_on"] = max(classifier(training, look).trained_on for look in LOOKS)
     return {**line, "cpu_s": round(time.process_time() - began, 2)}
+
+
+def _answers(seen: Line, training: Path) -> Iterator[tuple[str, Line]]:
+    """Yield every row's answer, the diagnosis's own first."""
+    said, foretold = seen["diagnosis"], seen["foretold"]
+    yield DIAGNOSIS, said
+    for row, look in zip(_BOOSTED, LOOKS, strict=True):
+        model = classifier(training, look)
+        yield row, model.answer_to(said["case"], seen["features"][look], foretold)
+    for row, fit in _calibrators().items():
+        yield row, with_shares(said, fit)
+
+
+def _written(table: Line, file: Path) -> Path:
+    file.parent.mkdir(exist_ok=True)
+    file.write_text(json.dumps(table))
+    return file
 
 
 @cache

@@ -1,12 +1,14 @@
 """What is measured, slice by slice: jobs, the lines that are kept, and which are there already."""
 
 import json
+import lzma
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
-from benchmarks.boards import beside, friction, learned, loops, weighings
+from benchmarks.boards import beside, friction, learned, loops, seen, weighings
 from benchmarks.boards.campaigns import NULLS
 from benchmarks.boards.worlds import CASES, WORLDS
 from benchmarks.machine import ROOT
@@ -16,10 +18,11 @@ FOLDERS: Final = 10_000  # mutated folders that go through the door
 TYPED: Final = 300  # of them through whole commands
 _SLICES: Final[Mapping[str, tuple[int, int]]] = {"mutations": (FOLDERS, 50), "commands": (TYPED, 5)}
 _WORLDS, _BESIDE, _LOOPS, _WEIGHINGS = "worlds", "beside", "loops", "weighings"
-_LEARNED: Final = "learned"
+SEEN: Final = "seen"
+LEARNED: Final = "learned"
 SEALED: Final = (_WORLDS, _LOOPS)
 TRAINING: Final = "training.jsonl.xz"
-SEEDED_BY: Final = {_BESIDE: _WORLDS, _LEARNED: _WORLDS}  # the board whose cases these are
+SEEDED_BY: Final = {_BESIDE: _WORLDS, SEEN: _WORLDS, LEARNED: SEEN}  # whose cases these are
 BOARDS: Final = ("nulls", "friction", *_SLICES)
 EVERY: Final = (*BOARDS, *SEALED, *SEEDED_BY, _WEIGHINGS)
 
@@ -31,7 +34,7 @@ class Job:
     """A case of a board, or a slice of mutated folders: seeds ``first`` to before ``stop``.
 
     ``frozen`` is the commit whose hash is the seed of sealed cases; ``training`` is the file of
-    the campaigns that rows learn from.
+    the campaigns that rows learn from, ``folder`` where lines are kept.
     """
 
     board: str
@@ -40,6 +43,7 @@ class Job:
     stop: int
     frozen: str = ""
     training: str = ""
+    folder: Path = RESULTS
 
     @property
     def key(self) -> tuple[str, int]:
@@ -101,8 +105,10 @@ def measured(job: Job) -> Line:
         return marked(job.campaign, job.first, job.frozen)
     if job.board == _BESIDE:
         return beside.compared(job.campaign, job.first, job.frozen, CASES)
-    if job.board == _LEARNED:
-        return learned.answered(job.campaign, job.first, job.frozen, CASES, Path(job.training))
+    if job.board == SEEN:
+        return seen.seen(job.campaign, job.first, job.frozen, CASES)
+    if job.board == LEARNED:
+        return learned.answered(_seen(job.folder)[job.key], Path(job.training))
     if job.board == _LOOPS:
         return loops.pursued(job.campaign, job.first, job.frozen)
     if job.board == _WEIGHINGS:
@@ -113,17 +119,23 @@ def measured(job: Job) -> Line:
     return judge(job.campaign, job.first)
 
 
+@cache
+def _seen(folder: Path) -> Mapping[tuple[str, int], Line]:
+    return {(one["campaign"], one["seed"]): one for one in kept(SEEN, folder)}
+
+
 def file_of(board: str, folder: Path = RESULTS) -> Path:
     """Return where a board's lines are kept."""
     return folder / f"{board}.jsonl"
 
 
 def kept(board: str, folder: Path = RESULTS) -> list[Line]:
-    """Return the lines that are there; of two of one case the later."""
+    """Return the lines that are there, compressed ones first; of two of one case the later."""
     file = file_of(board, folder)
-    if not file.exists():
-        return []
-    rows = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines() if line]
+    packed = file.with_name(f"{file.name}.xz")
+    text = lzma.decompress(packed.read_bytes()).decode() if packed.exists() else ""
+    text += file.read_text(encoding="utf-8") if file.exists() else ""
+    rows = [json.loads(line) for line in text.splitlines() if line]
     return list({(one["campaign"], one["seed"]): one for one in rows}.values())
 
 

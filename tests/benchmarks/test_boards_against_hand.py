@@ -1,5 +1,6 @@
 """The boards count what they say: tallies by hand, planted SNR by simulation, jobs that go on."""
 
+import lzma
 from itertools import pairwise
 from pathlib import Path
 
@@ -36,6 +37,22 @@ def test_lines_are_kept_and_only_what_is_missing_is_measured(tmp_path: Path) -> 
     assert [one["commit"] for one in rows] == ["old", "newer"]
     assert [one.first for one in missing(jobs, rows, None)] == [2]
     assert [one.first for one in missing(jobs, rows, "newer")] == [0, 2]
+
+
+def test_lines_go_on_from_compressed_ones(tmp_path: Path) -> None:
+    keep("seen", {"campaign": "A", "seed": 0, "commit": "old"}, tmp_path)
+    keep("seen", {"campaign": "B", "seed": 0, "commit": "old"}, tmp_path)
+    file = tmp_path / "seen.jsonl"
+    (tmp_path / "seen.jsonl.xz").write_bytes(lzma.compress(file.read_bytes()))
+    assert len(kept("seen", tmp_path)) == 2
+    file.unlink()
+    keep("seen", {"campaign": "B", "seed": 0, "commit": "new"}, tmp_path)
+    keep("seen", {"campaign": "C", "seed": 0, "commit": "new"}, tmp_path)
+    rows = {one["campaign"]: one["commit"] for one in kept("seen", tmp_path)}
+    assert rows == {"A": "old", "B": "new", "C": "new"}
+    assert [
+        job.campaign for job in missing(jobs_of("seen", [], (0, 1)), kept("seen", tmp_path), None)
+    ] == ["D"]
 
 
 def test_the_slices_hold_every_mutated_folder_once() -> None:

@@ -9,6 +9,7 @@ import pytest
 
 from benchmarks.boards.learned import ROWS, answered, calibrations, figures_by_row
 from benchmarks.boards.rows import jobs_of
+from benchmarks.boards.seen import seen
 from benchmarks.boards.worlds import marked
 from benchmarks.gap_worlds import counted
 from tests.sealed.learning.calibration import Conformal, Isotonic
@@ -77,7 +78,7 @@ def test_the_note_counts_whose_marks_are_those_of_the_worlds() -> None:
 
 
 def test_the_first_hundred_cases_of_each_world_are_asked() -> None:
-    assert len(jobs_of("learned", [], None)) == 400
+    assert len(jobs_of("seen", [], None)) == len(jobs_of("learned", [], None)) == 400
 
 
 @pytest.mark.slow
@@ -86,13 +87,13 @@ def test_a_case_has_the_marks_of_its_world_and_those_of_every_row(tmp_path: Path
     rng = np.random.default_rng(8)
     for index in range(24):
         name, stage = ("zero-offset", ["dynamometers"]) if index % 2 else ("none", [])
-        seen = {"cell": ["force_aft|mean|0"], "run": [0], "settings": [[0.0, -3.0, 1.0, 1.0, 1.0]]}
-        seen["off"] = [20.0 * (index % 2) + float(rng.standard_normal())]
-        numbers = {"components": seen, "hypotheses": {"zero-offset|share": float(index % 2)}}
+        off = {"cell": ["force_aft|mean|0"], "run": [0], "settings": [[0.0, -3.0, 1.0, 1.0, 1.0]]}
+        off["off"] = [20.0 * (index % 2) + float(rng.standard_normal())]
+        numbers = {"components": off, "hypotheses": {"zero-offset|share": float(index % 2)}}
         kept = {"index": index, "right": [name], "stages": stage, "numbers": numbers}
         (tmp_path / f"{index:05d}.json").write_text(json.dumps(kept))
     assert set(numbers) == set(LOOKS)
-    line = answered("A", 2, _COMMIT, 3, tmp_path)
+    line = answered(json.loads(json.dumps(seen("A", 2, _COMMIT, 3))), tmp_path)
     assert line["rows"].keys() == set(ROWS)
     assert line["trained_on"] == 24
     worlds = json.loads(json.dumps(marked("A", 2, _COMMIT, 3)))

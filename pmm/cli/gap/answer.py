@@ -13,6 +13,9 @@ from pmm.cli.options import SCHEDULER, jobs_option
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from analysis.gap.judge.diagnosis import Diagnosis
+    from pmm.gap.preparation import PreparedCampaign
+
 
 @dataclass(frozen=True)
 class CaseTask:
@@ -152,7 +155,22 @@ def answer_one(task: CaseTask) -> CaseAnswer:
 def diagnosed(
     folder: Path, left_out: tuple[str, ...] = (), *, proposes: bool = True
 ) -> dict[str, Any]:
-    """Return the answer to a case's folder, with some effects taken out of the catalogue.
+    """Return the answer to a case's folder; parameters as of :func:`diagnosis_of`."""
+    return answer_to(folder.name, *diagnosis_of(folder, left_out, proposes=proposes))
+
+
+def answer_to(case: str, prepared: "PreparedCampaign", diagnosis: "Diagnosis") -> dict[str, Any]:
+    """Return a case's diagnosis as an answer."""
+    from pmm.gap.answer import answer as answer_of
+
+    stated = prepared.case
+    return answer_of(case, diagnosis, prepared.recentred.free, stated.held_out, stated.tolerances)
+
+
+def diagnosis_of(
+    folder: Path, left_out: tuple[str, ...] = (), *, proposes: bool = True
+) -> "tuple[PreparedCampaign, Diagnosis]":
+    """Return a case's campaign and its diagnosis, with some effects taken out of the catalogue.
 
     Parameters
     ----------
@@ -162,18 +180,10 @@ def diagnosed(
     from dataclasses import replace
 
     from analysis.gap.judge.diagnosis import diagnose
-    from pmm.gap.answer import answer as answer_of
     from pmm.gap.preparation import prepare
     from sim.effects.catalogue import catalogue
 
     kinds = {name: kind for name, kind in catalogue().items() if name not in left_out}
-    preparation = prepare(folder, kinds)
-    settings = preparation.settings if proposes else replace(preparation.settings, choices=None)
-    diagnosis = diagnose(preparation.recentred.rig, preparation.fitted, settings)
-    return answer_of(
-        folder.name,
-        diagnosis,
-        preparation.recentred.free,
-        preparation.case.held_out,
-        preparation.case.tolerances,
-    )
+    prepared = prepare(folder, kinds)
+    settings = prepared.settings if proposes else replace(prepared.settings, choices=None)
+    return prepared, diagnose(prepared.recentred.rig, prepared.fitted, settings)

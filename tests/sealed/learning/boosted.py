@@ -73,12 +73,19 @@ class Classifier:
         return _by_name(self.answers, row), _by_name(self.stages, row)
 
     def answer(self, case: Path) -> dict[str, Any]:
-        """Return the answer to a case's folder; nothing is foretold to shrink."""
-        shares, stages = self.shares(FEATURES[self.look](LOOKS[self.look](case)))
+        """Return the answer to a case's folder."""
+        features = FEATURES[self.look](LOOKS[self.look](case))
+        return self.answer_to(case.name, features, scene(case).foretold())
+
+    def answer_to(
+        self, case: str, features: Mapping[str, float],
+        foretold: tuple[Mapping[str, Any], Mapping[str, Any]],
+    ) -> dict[str, Any]:  # fmt: skip
+        """Return the answer by a case's features; nothing is foretold to shrink."""
+        shares, stages = self.shares(features)
         stages.pop(NONE, None)
         certain = math.fsum(stages.values()) > 0.0
-        return sheet(case.name, shares, stages if certain else stages_of(shares),
-                     scene(case).foretold())  # fmt: skip
+        return sheet(case, shares, stages if certain else stages_of(shares), foretold)
 
 
 @cache

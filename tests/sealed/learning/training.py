@@ -62,9 +62,12 @@ def keep(places: Sequence[Path], file: Path) -> int:
 
 
 def _example(kept: Mapping[str, Any]) -> Example:
-    looks = kept["numbers"]
-    features = {look: dict(_rounded(of(looks[look]))) for look, of in FEATURES.items()}
-    return Example(kept["index"], kept["right"], kept["stages"], features)
+    return Example(kept["index"], kept["right"], kept["stages"], features_of(kept["numbers"]))
+
+
+def features_of(looks: Mapping[str, Numbers]) -> dict[str, dict[str, float]]:
+    """Return by look the features of what each look says of a campaign, as they are kept."""
+    return {look: dict(_rounded(of(looks[look]))) for look, of in FEATURES.items()}
 
 
 def _rounded(features: Mapping[str, float]) -> Iterator[tuple[str, float]]:

@@ -13,7 +13,12 @@ if TYPE_CHECKING:
 
 
 def weighed_of(case: Path) -> dict[str, Any]:
-    """Return numbers of a case's hypotheses by name; an effect that was not fitted has fewer.
+    """Return numbers of a case's hypotheses by name, as :func:`numbers_of` has them."""
+    return numbers_of(weighed_hypotheses(case))
+
+
+def numbers_of(weighed: "WeighedHypotheses[Problem]") -> dict[str, Any]:
+    """Return numbers of hypotheses by name; an effect that was not fitted has fewer.
 
     Of each effect: ``evidence``, by how much the log evidence that its first look promises is above
     that of no effect, in which the number of runs cancels; ``size`` of its signature, in sigma;
@@ -22,7 +27,6 @@ def weighed_of(case: Path) -> dict[str, Any]:
     """
     from analysis.gap.search.fit import no_effect
 
-    weighed = weighed_hypotheses(case)
     problem = weighed.problem
     found: dict[str, Any] = {
         f"{name}|share": share for name, share in weighed.answers.by_answer.items()
