@@ -10,10 +10,9 @@ from hardware.description.motor import UNKNOWN_KEYS_REFUSED
 from hardware.driver import Services
 from hardware.errors import LineError
 from hardware.line_registers import Ending, Line, LineCommand, LineNumber, LineStatus
-from hardware.port_lines import Splitter
+from hardware.port_lines import LineSplitter, Splitter
 from hardware.serial_port import PortSettings
 
-_LONGEST: Final = 256
 _UNKNOWN: Final = -1  # address of what a log has, and nobody asked
 
 
@@ -35,12 +34,13 @@ class LineExchanges:
     """Finds the reply to the line that was sent last: both, with a tab between, for the log."""
 
     def __init__(self, name: str, ending: bytes) -> None:
-        self._name, self._ending = name, ending
-        self._asked = self._rest = b""
+        self._ending, self._asked = ending, b""
+        self._replies = LineSplitter(name, ending, "; check port.ending")
 
     def sent(self, data: bytes) -> None:
         """Take a line; what is left of a reply to another one is forgotten."""
-        self._asked, self._rest = data.removesuffix(self._ending), b""
+        self._asked = data.removesuffix(self._ending)
+        self._replies.forget()
 
     def split(self, data: bytes) -> list[bytes]:
         """Return the exchange that bytes complete; an echo of the line is left out.
@@ -50,13 +50,8 @@ class LineExchanges:
         LineError
             If so much has come without an ending that it cannot be a reply.
         """
-        *lines, self._rest = (self._rest + data).split(self._ending)
-        if len(self._rest) > _LONGEST:
-            start, self._rest = self._rest[:32], b""
-            raise LineError(
-                self._name, f"no ending after {_LONGEST} bytes ({start!r} ...); check port.ending"
-            )
-        said = [line for line in lines if line.strip() and line.strip() != self._asked.strip()]
+        lines = self._replies.split(data)
+        said = [line for line in lines if line.strip() != self._asked.strip()]
         return [self._asked + b"\t" + line for line in said[-1:]]
 
 

@@ -77,7 +77,7 @@ def test_other_text_and_silence_are_told(heard) -> None:
     assert foreign.device_kind == "unknown: its lines are none of ours"
     assert foreign.first_refused == "hello"
     endless = heard(lambda talker: talker.send(b"x" * 300))
-    assert "no line feed after 256 bytes" in endless.first_refused
+    assert r"no line ending b'\n' after 256 bytes" in endless.first_refused
     silent = heard()
     assert silent.device_kind == "silent"
     assert math.isnan(silent.rate_hz)
