@@ -139,6 +139,8 @@ def counted(
         f"cases of each world, so far {len(beside)} of {FEW * len(WORLDS)}: "
         "`python -m benchmarks.boards beside` goes on with them.",
         *(f"Frozen at commit {one}, whose hash is the seed." for one in _frozen(lines)),
+        "Stages are the frozen diagnosis's, which gave what is unknown to all stages alike where "
+        "nothing tells them apart; since then they count by the effects known of each.",
     ]
     if beside:
         notes.append(

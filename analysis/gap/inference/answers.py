@@ -155,12 +155,16 @@ def _beside_odd_runs(
 def _located(
     shaped: Mapping[str, float], alone: Mapping[str, float], beside: Background
 ) -> dict[str, float]:
-    """Return from which stage what is unknown comes, by what it looks like and where it shows."""
+    """Return from which stage what is unknown comes, by what it looks like and where it shows.
+
+    A kind of observations that tells no stage counts to each as the catalogue's effects do.
+    """
     parts: dict[str, list[float]] = {stage: [log] for stage, log in shaped.items()}
     for kind, log in alone.items():
         stages = beside.kinds[kind].stages
         for stage in stages:
-            parts.setdefault(stage, []).append(log - math.log(len(stages)))
+            share = beside.shapes.stage_share(stage, stages)
+            parts.setdefault(stage, []).append(log + math.log(share))
     logs = {stage: _sum(stage_logs) for stage, stage_logs in parts.items()}
     total = _sum(list(logs.values()))
     return {stage: math.exp(log - total) for stage, log in logs.items() if total > -math.inf}

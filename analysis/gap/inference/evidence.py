@@ -25,7 +25,7 @@ class Kind:
     rows
         Which ones, shape ``(observations,)``; whole cells of the kernel.
     stages
-        Where something acts that shows in these alone, each as probable as the others.
+        Where something may act that shows in these alone.
     """
 
     rows: BoolArray

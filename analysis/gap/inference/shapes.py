@@ -5,6 +5,7 @@ covariance of what is unknown is that of the effects' signatures in this very ca
 """
 
 import math
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -78,6 +79,15 @@ class Shapes:
             effects += [effect.name] * directions.shape[1]
             stages += [effect.stage] * directions.shape[1]
         return cls(np.hstack(columns), tuple(effects), tuple(stages), _alike(looked, tolerances))
+
+    def stage_share(self, stage: str, among: Sequence[str]) -> float:
+        """Return how probable a stage is where nothing tells it, out of some.
+
+        As the effects have it whose shapes these are, one of each stage that is not known added
+        (Laplace's rule of succession).
+        """
+        known = Counter(dict(zip(self.effects, self.stages, strict=True)).values())
+        return (known[stage] + 1) / (sum(known[other] for other in among) + len(among))
 
     def weights_beside(self, names: Sequence[str]) -> FloatArray:
         """Return the weights of what may stand beside effects: of all that is not like them."""

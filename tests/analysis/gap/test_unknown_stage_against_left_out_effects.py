@@ -43,4 +43,4 @@ def test_what_shakes_both_gauges_is_not_sought_in_one_channel(rig: SimulatedRig)
     answers = diagnose(rig, record(rig, [shed], 31), Settings(catalogue)).answers
     assert answers.by_answer["unknown"] > 0.9
     assert answers.unknown_stages["acquisition"] < 0.1
-    assert answers.unknown_stages[shed.stage.value] > 0.3
+    assert max(answers.unknown_stages.items(), key=lambda one: one[1])[0] == shed.stage.value
