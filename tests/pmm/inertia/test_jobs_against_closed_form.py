@@ -70,27 +70,33 @@ pivot_above_midpoint_m = 0.9
     assert "[check]" in outcome.next_step
 
 
-def test_the_midpoints_inertia_has_the_correlations_in_it(tmp_path: Path) -> None:
-    mass, tare, total = (30.0, 0.01), (3.0, 0.004), (27.0, 0.006)
-    tare_s, loaded_s = (2.0 * math.pi * math.sqrt(i / (G * s)) for i, s in ((40, 3), (70, 27)))
-    text = f"""
+Known = tuple[float, float]  # a value and its standard uncertainty
+
+
+def _weighed(mass: Known, moments: tuple[Known, Known], periods_s: Known, pivot_m: float) -> str:
+    """Return a swing's file: empty, then with a model whose pivot is so far above its midpoint."""
+    swings = "".join(
+        f"[{name}]\nmass_kg = {weight_kg}\nmoment_kg_m = {moment}\nu_moment_kg_m = {u_moment}\n"
+        f"period = {timed(period_s)}\n"
+        for name, weight_kg, (moment, u_moment), period_s in zip(
+            ("tare", "loaded"), (42.0, 42.0 + mass[0]), moments, periods_s, strict=True
+        )
+    )
+    return f"""
 gravity_m_s2 = 9.81
-[tare]
-mass_kg = 42.0
-moment_kg_m = {tare[0]}
-u_moment_kg_m = {tare[1]}
-period = {timed(tare_s)}
-[loaded]
-mass_kg = 72.0
-moment_kg_m = {total[0]}
-u_moment_kg_m = {total[1]}
-period = {timed(loaded_s)}
+{swings}
 [model]
 mass_kg = {mass[0]}
 u_mass_kg = {mass[1]}
 cg_x_m = 0.0
-pivot_above_midpoint_m = 0.7
+pivot_above_midpoint_m = {pivot_m}
 """
+
+
+def test_the_midpoints_inertia_has_the_correlations_in_it(tmp_path: Path) -> None:
+    mass, tare, total = (30.0, 0.01), (3.0, 0.004), (27.0, 0.006)
+    tare_s, loaded_s = (2.0 * math.pi * math.sqrt(i / (G * s)) for i, s in ((40, 3), (70, 27)))
+    text = _weighed(mass, (tare, total), (tare_s, loaded_s), 0.7)
     body = swing.run(write(tmp_path, text)).body
     assert body is not None
 
@@ -110,23 +116,7 @@ def test_taking_parts_off_keeps_the_correlations(tmp_path: Path) -> None:
     """A mount of 5 kg is on the swing with the model; by hand, its moments are subtracted."""
     mass, tare, total = (35.0, 0.001), (3.0, 0.0005), (30.0, 0.02)
     tare_s, loaded_s = (2.0 * math.pi * math.sqrt(i / (G * s)) for i, s in ((40, 3), (72, 30)))
-    text = f"""
-gravity_m_s2 = 9.81
-[tare]
-mass_kg = 42.0
-moment_kg_m = {tare[0]}
-u_moment_kg_m = {tare[1]}
-period = {timed(tare_s)}
-[loaded]
-mass_kg = 77.0
-moment_kg_m = {total[0]}
-u_moment_kg_m = {total[1]}
-period = {timed(loaded_s)}
-[model]
-mass_kg = {mass[0]}
-u_mass_kg = {mass[1]}
-cg_x_m = 0.0
-pivot_above_midpoint_m = 0.3
+    text = f"""{_weighed(mass, (tare, total), (tare_s, loaded_s), 0.3)}
 [[take_off]]
 name = "mount"
 mass_kg = 5.0
