@@ -14,6 +14,7 @@ from benchmarks.boards.rows import (
     TRAINING,
     Job,
     Line,
+    case_of,
     jobs_of,
     keep,
     kept,
@@ -44,7 +45,7 @@ def main(arguments: Sequence[str]) -> int:
         _check_rows()
         check_unchanged(rows)
         common = {"frozen": _seed(request.board, asked_of), "training": request.training}
-        there = {(one["campaign"], one["seed"]) for one in asked_of}
+        there = {case_of(line) for line in asked_of}
         jobs = [replace(job, **common, folder=request.output) for job in jobs if job.key in there]
     todo = list(missing(jobs, rows, now if request.again else None))
     print(

@@ -121,7 +121,12 @@ def measured(job: Job) -> Line:
 
 @cache
 def _seen(folder: Path) -> Mapping[tuple[str, int], Line]:
-    return {(one["campaign"], one["seed"]): one for one in kept(SEEN, folder)}
+    return {case_of(line): line for line in kept(SEEN, folder)}
+
+
+def case_of(line: Line) -> tuple[str, int]:
+    """Return what tells a line from the others of its board, as :attr:`Job.key` does."""
+    return line["campaign"], line["seed"]
 
 
 def file_of(board: str, folder: Path = RESULTS) -> Path:
@@ -136,14 +141,12 @@ def kept(board: str, folder: Path = RESULTS) -> list[Line]:
     text = lzma.decompress(packed.read_bytes()).decode() if packed.exists() else ""
     text += file.read_text(encoding="utf-8") if file.exists() else ""
     rows = [json.loads(line) for line in text.splitlines() if line]
-    return list({(one["campaign"], one["seed"]): one for one in rows}.values())
+    return list({case_of(line): line for line in rows}.values())
 
 
 def missing(jobs: Sequence[Job], rows: Sequence[Line], commit: str | None) -> Iterator[Job]:
     """Yield the jobs that have no line, or none of this commit if one is given."""
-    there = {
-        (one["campaign"], one["seed"]) for one in rows if commit is None or one["commit"] == commit
-    }
+    there = {case_of(line) for line in rows if commit is None or line["commit"] == commit}
     yield from (job for job in jobs if job.key not in there)
 
 
